@@ -1,0 +1,1 @@
+//! One curve and its count -> its nodes, bit-identical from both sides.

@@ -1,0 +1,1 @@
+//! Chunk files -> Verdict: every promise, verified from the output alone.

@@ -1,0 +1,1 @@
+//! Words -> Args -> Job; the only module that prints.

@@ -1,0 +1,1 @@
+//! Where two segments cross, rounded to the grid.

@@ -1,0 +1,57 @@
+//! Shape measures of a quadrilateral.
+//!
+//! Definitions after Verdict (Knupp and others), as the independent checker uses them: corners are
+//! counter-clockwise, `e_k = p_{k+1} - p_k`, corner Jacobian `J_k = e_k x (p_{k-1} - p_k)`.
+
+use crate::geometry::point::Xy;
+
+/// Twice the signed area of the triangle `a b c`, m².
+pub fn cross(a: Xy, b: Xy, c: Xy) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+/// Distance between `a` and `b`, metres.
+pub fn distance(a: Xy, b: Xy) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// The four corner Jacobians, m²; all positive if and only if the quad is strictly convex.
+pub fn corner_jacobians(p: &[Xy; 4]) -> [f64; 4] {
+    std::array::from_fn(|k| cross(p[k], p[(k + 1) % 4], p[(k + 3) % 4]))
+}
+
+/// Scaled Jacobian: the least sine of a corner, in [-1, 1]; 1 for a rectangle, 0 if an edge has no
+/// length.
+pub fn scaled_jacobian(p: &[Xy; 4]) -> f64 {
+    let mut least = 1.0_f64;
+    for (k, jacobian) in corner_jacobians(p).into_iter().enumerate() {
+        let scale = distance(p[k], p[(k + 1) % 4]) * distance(p[k], p[(k + 3) % 4]);
+        least = least.min(if scale > 0.0 { jacobian / scale } else { 0.0 });
+    }
+    least
+}
+
+/// Signed area, m².
+pub fn area(p: &[Xy; 4]) -> f64 {
+    0.5 * ((p[2][0] - p[0][0]) * (p[3][1] - p[1][1]) - (p[2][1] - p[0][1]) * (p[3][0] - p[1][0]))
+}
+
+/// 4 x area / perimeter, metres: the side of a square, and what bounds an explicit time step.
+pub fn hydraulic_size_m(p: &[Xy; 4]) -> f64 {
+    let perimeter: f64 = (0..4).map(|k| distance(p[k], p[(k + 1) % 4])).sum();
+    if perimeter > 0.0 {
+        4.0 * area(p).abs() / perimeter
+    } else {
+        0.0
+    }
+}
+
+/// The interior corner angles, degrees; above 180 at a concave corner.
+pub fn corner_angles_deg(p: &[Xy; 4]) -> [f64; 4] {
+    std::array::from_fn(|k| {
+        let (a, b, c) = (p[k], p[(k + 1) % 4], p[(k + 3) % 4]);
+        let dot = (b[0] - a[0]) * (c[0] - a[0]) + (b[1] - a[1]) * (c[1] - a[1]);
+        let angle = cross(a, b, c).atan2(dot).to_degrees();
+        if angle < 0.0 { angle + 360.0 } else { angle }
+    })
+}

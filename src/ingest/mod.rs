@@ -1,0 +1,1 @@
+//! GIS files -> (Domain, Findings).

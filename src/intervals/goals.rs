@@ -1,0 +1,25 @@
+//! Goals: what the sizes wish of each curve, before parity.
+
+/// One entry a curve. The count n of a curve must satisfy `lower <= n <= upper`; what it costs is
+/// `cost(curve, n)`, convex in n.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Goals {
+    /// Wished (real) number of intervals, the integral of ds / h.
+    pub goal: Vec<f64>,
+    /// Least count: one an edge of the chain, more where the shape asks for it.
+    pub lower: Vec<u32>,
+    /// Largest count that sizes allow; equal to `lower` for a fixed count.
+    pub upper: Vec<u32>,
+    /// Weight of the curve's deviation; 1 unless said otherwise.
+    pub weight: Vec<f64>,
+}
+
+impl Goals {
+    /// What count `n` costs on `curve`: weight x (max(n / g, g / n) - 1), with g the goal but at
+    /// least the lower bound. Convex in n, zero at n = g, and symmetric in ratio: half as many is as bad as twice as many.
+    pub fn cost(&self, curve: usize, n: u32) -> f64 {
+        let goal = self.goal[curve].max(f64::from(self.lower[curve]));
+        let n = f64::from(n);
+        self.weight[curve] * ((n / goal).max(goal / n) - 1.0)
+    }
+}

@@ -1,0 +1,1 @@
+//! Job -> Outcome: the phases, the threads, the queues, the progress. The one home of concurrency.

@@ -1,0 +1,1 @@
+//! Findings + qualities -> Report (text, json, html, pictures).

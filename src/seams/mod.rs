@@ -1,0 +1,1 @@
+//! Partition + SizeWish -> Arrangement in which large sub-domains are cut into parts.

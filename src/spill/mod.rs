@@ -1,0 +1,1 @@
+//! What is parked between phases; the journal of a run.

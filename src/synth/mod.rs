@@ -1,0 +1,1 @@
+//! A seed and a number of lines -> a realistic synthetic city.
