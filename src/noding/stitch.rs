@@ -41,32 +41,40 @@ pub fn stitch(domain: &Domain, tiles: Vec<TileNodes>) -> Arrangement {
 /// One stretch from each stop of a segment to the next.
 fn stretches(domain: &Domain, stops: &[Stop]) -> Vec<([u32; 2], Option<Piece>)> {
     let mut made = Vec::with_capacity(stops.len());
+    let mut at_m = Vec::new();
     for of_line in stops.chunk_by(|s, t| s.segment.line == t.segment.line) {
         let line = of_line[0].segment.line;
         let stations = domain.stations_m(line);
         for of_segment in of_line.chunk_by(|s, t| s.segment == t.segment) {
-            let mut from_m = station_m(domain, &stations, of_segment[0]);
-            for pair in of_segment.windows(2) {
-                let to_m = station_m(domain, &stations, pair[1]);
+            stations_of(domain, &stations, of_segment, &mut at_m);
+            for (pair, at_m) in of_segment.windows(2).zip(at_m.windows(2)) {
+                let (from_m, to_m) = (at_m[0], at_m[1]);
                 let piece = Piece { line, from_m, to_m };
                 made.push(([pair[0].node, pair[1].node], Some(piece)));
-                from_m = to_m;
             }
         }
     }
     made
 }
 
-/// The station of the foot of a node on its segment; exactly a vertex's own at the ends, and
-/// strictly growing from stop to stop.
-fn station_m(domain: &Domain, stations: &[f64], stop: Stop) -> f64 {
-    let (a, b) = stop.segment.ends(domain);
-    let at = stop.segment.at as usize;
-    let length2 = a.distance2(b);
-    if stop.along >= length2 {
-        return stations[at + 1];
+/// Stations of the feet of all stops of one segment: exactly a vertex's own at the ends, and
+/// strictly growing, since they tell the direction of a piece. Feet of neighbouring pixels on a
+/// steep segment of 100 km may be closer than two floats are; those move apart by the last bit.
+fn stations_of(domain: &Domain, stations: &[f64], stops: &[Stop], at_m: &mut Vec<f64>) {
+    let (a, b) = stops[0].segment.ends(domain);
+    let at = stops[0].segment.at as usize;
+    let (start_m, end_m) = (stations[at], stations[at + 1]);
+    let length2 = a.distance2(b) as f64;
+    at_m.clear();
+    for stop in stops {
+        let foot_m = start_m + stop.along as f64 / length2 * (end_m - start_m);
+        at_m.push(match at_m.last() {
+            Some(before_m) => foot_m.max(before_m.next_up()),
+            None => start_m,
+        });
     }
-    let share = stop.along as f64 / length2 as f64;
-    let station = stations[at] + share * (stations[at + 1] - stations[at]);
-    station.clamp(stations[at], stations[at + 1])
+    *at_m.last_mut().expect("a segment passes its own ends") = end_m;
+    for i in (1..at_m.len() - 1).rev() {
+        at_m[i] = at_m[i].min(at_m[i + 1].next_down());
+    }
 }
