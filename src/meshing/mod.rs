@@ -2,4 +2,5 @@
 
 mod draft;
 pub mod patch;
+mod triangulate;
 mod visits;
