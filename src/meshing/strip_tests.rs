@@ -114,7 +114,65 @@ fn shapes() -> Vec<(&'static str, Loops)> {
         "odd island",
         loops_of(vec![circle([0.0; 2], 20.0, 125, false), circle([3.0, 2.0], 4.0, 25, true)], h),
     ));
+    list.push(("ring cut", ring_cut(40)));
+    list.push(("seams", seams(0.0)));
+    list.push(("seams odd", seams(0.5)));
     list
+}
+
+/// A ring, cut by one seam that the part has on both sides.
+fn ring_cut(inner: usize) -> Loops {
+    let mut walk = circle([0.0; 2], 24.0, 150, false);
+    walk.push([24.0, 0.0]);
+    walk.extend((7..24).rev().map(|x| [f64::from(x), 0.0]));
+    let outer = 150;
+    walk.extend(circle([0.0; 2], 6.0, inner, true));
+    walk.push([6.0, 0.0]);
+    walk.extend((7..24).map(|x| [f64::from(x), 0.0]));
+    let seam = |k: usize| (outer..outer + 18).contains(&k) || k >= outer + 18 + inner;
+    let on_seam = (0..walk.len()).map(seam).collect();
+    let mut loops = loops_of(vec![walk], 1.0);
+    loops.on_seam = vec![on_seam];
+    loops.lattice_origin = Some([0.0; 2]);
+    loops
+}
+
+/// A part between two seams that follow the lattice, slanted walls at the sides.
+fn seams(shift: f64) -> Loops {
+    let seam = |from: f64, to: f64, y: f64| {
+        let inner = (from + 0.7).ceil() as i32..=(to - 0.7).floor() as i32;
+        let mut row = vec![[from, y]];
+        row.extend(inner.map(|x| [f64::from(x), y]));
+        row
+    };
+    let wall = |a: Xy, b: Xy| {
+        let n = (b[1] - a[1]).abs().round() as i32;
+        (0..n).map(move |k| {
+            let t = f64::from(k) / f64::from(n);
+            [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
+        })
+    };
+    let mut walk = seam(-0.4, 60.3, 0.0);
+    let mut on_seam = vec![true; walk.len()];
+    walk.extend(wall([60.3, 0.0], [57.2 + shift, 31.0]));
+    on_seam.resize(walk.len(), false);
+    let mut top = seam(2.7, 57.2 + shift, 31.0);
+    top.remove(0);
+    top.push([57.2 + shift, 31.0]);
+    top.reverse();
+    walk.extend(top);
+    on_seam.resize(walk.len(), true);
+    walk.extend(wall([2.7, 31.0], [-0.4, 0.0]));
+    on_seam.resize(walk.len(), false);
+    if walk.len() % 2 == 1 {
+        let (a, b) = (walk[walk.len() - 1], walk[walk.len() - 2]);
+        walk.insert(walk.len() - 1, [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0]);
+        on_seam.push(false);
+    }
+    let mut loops = loops_of(vec![walk], 1.0);
+    loops.on_seam = vec![on_seam];
+    loops.lattice_origin = Some([-7.0, 4.0]);
+    loops
 }
 
 #[test]
@@ -127,4 +185,64 @@ fn drafts_are_sound() {
         for p in &draft.nodes { println!("N {} {}", p[0], p[1]); }
         for q in &draft.quads { println!("Q {} {} {} {}", q[0], q[1], q[2], q[3]); }
     }
+}
+
+#[test]
+fn bench_disc() {
+    for r in [60.0, 700.0] {
+        let n = (TAU * r / 2.0).round() as usize * 2;
+        let loops = loops_of(vec![circle([0.0; 2], r, n, false)], 1.0);
+        let visits = Visits::of(&loops);
+        let t = std::time::Instant::now();
+        let draft = strip::mesh(&visits, &loops).expect("disc");
+        println!("BENCH r {r} quads {} settled {} in {:?}", draft.quads.len(), draft.settled, t.elapsed());
+    }
+}
+
+/// Star-shaped outlines with rough radii and spacings, islands, some of them odd.
+fn rough(seed: u64) -> Loops {
+    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+    let mut random = move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let radius = 1.5 + 25.0 * random() * random();
+    let mut star = |at: Xy, radius: f64, count: usize, turn: f64| -> Vec<Xy> {
+        (0..count)
+            .map(|k| {
+                let a = turn * TAU * (k as f64 + 0.4 * random()) / count as f64;
+                let r = radius * (0.8 + 0.2 * random());
+                [at[0] + r * a.cos(), at[1] + r * a.sin()]
+            })
+            .collect()
+    };
+    let count = 4 + (radius * 6.0) as usize + (seed % 3) as usize;
+    let mut walks = vec![star([0.0; 2], radius, count, 1.0)];
+    for k in 0..seed % 4 {
+        let a = TAU * k as f64 / 4.0;
+        let at = [0.45 * radius * a.cos(), 0.45 * radius * a.sin()];
+        walks.push(star(at, 0.2 * radius, 3 + ((seed / 4 + k) % 9) as usize, -1.0));
+    }
+    let total: usize = walks.iter().map(Vec::len).sum();
+    if total % 2 == 1 {
+        let (a, b) = (walks[0][0], walks[0][1]);
+        walks[0].insert(1, [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0]);
+    }
+    loops_of(walks, 1.0)
+}
+
+#[test]
+fn rough_walks_give_sound_drafts() {
+    let mut made = 0;
+    for seed in 1..400 {
+        let loops = rough(seed);
+        let visits = Visits::of(&loops);
+        if let Some(draft) = strip::mesh(&visits, &loops) {
+            assert_sound(&draft, &visits);
+            made += 1;
+        }
+    }
+    assert!(made > 390, "{made} of 399");
 }
