@@ -38,6 +38,10 @@
 //! sub-domain into parts is done in `seams`.
 
 pub mod check;
+mod clearance;
+mod core;
+mod core_quads;
+mod corridor;
 mod draft;
 mod edits;
 mod finish;
@@ -45,11 +49,17 @@ mod improve;
 mod join;
 mod kernel;
 mod last_resort;
+mod lattice;
 mod pairing;
 pub mod patch;
+mod rows;
 mod scatter;
 pub mod score;
 mod smooth;
+mod strip;
+mod strip_border;
+#[cfg(test)]
+mod strip_tests;
 mod triangulate;
 mod visits;
 
