@@ -101,7 +101,8 @@ impl fmt::Display for Error {
                 reason,
             } => write!(
                 f,
-                "{}: ends in the middle, after {features} features ({reason}); fetch or write it again",
+                "{}: ends in the middle, after {features} features ({reason}); fetch or write it \
+                 again",
                 file.display()
             ),
             Error::Empty { file } => {
@@ -121,7 +122,7 @@ impl fmt::Display for Error {
             } => {
                 write!(f, "{}: feature {feature}", file.display())?;
                 if let Some([x, y]) = at {
-                    write!(f, " at ({x}, {y})")?;
+                    write!(f, " at ({}, {})", Number(*x), Number(*y))?;
                 }
                 write!(f, ": {reason}; {advice}")
             }
@@ -149,6 +150,19 @@ impl fmt::Display for Error {
                 high[0],
                 high[1]
             ),
+        }
+    }
+}
+
+/// A coordinate; one that is not a place on Earth in scientific notation.
+struct Number(f64);
+
+impl fmt::Display for Number {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.abs() < 1e12 {
+            write!(f, "{}", self.0)
+        } else {
+            write!(f, "{:e}", self.0)
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Lines -> the planar arrangement: nodes, edges between them, and the pieces of lines on each edge.
+//! Lines -> the planar arrangement: nodes, edges between them, pieces of lines on each edge.
 //!
 //! # Promises
 //! 1. Edges meet only at nodes, exactly ([`check`]).
