@@ -63,6 +63,13 @@ pub enum Error {
         /// The file.
         file: PathBuf,
     },
+    /// More kinds than a mesh can tell apart.
+    TooManyKinds {
+        /// The file.
+        file: PathBuf,
+        /// How many.
+        kinds: usize,
+    },
     /// The data do not fit the integer grid.
     TooWide {
         /// The file.
@@ -134,6 +141,12 @@ impl fmt::Display for Error {
             Error::NoLines { file } => write!(
                 f,
                 "{}: has neither polygons nor lines; at least a boundary polygon is needed",
+                file.display()
+            ),
+            Error::TooManyKinds { file, kinds } => write!(
+                f,
+                "{}: the property `kind` has {kinds} values, at most 65535 are possible; put what \
+                 is special to a feature into `name`",
                 file.display()
             ),
             Error::TooWide {

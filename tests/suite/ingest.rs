@@ -208,3 +208,26 @@ fn coordinates_move_by_half_a_cell_at_most() {
         }
     }
 }
+
+#[test]
+fn too_many_kinds_is_bad_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("kinds.geojson");
+    let features: Vec<String> = (0..65_536)
+        .map(|kind| {
+            format!(
+                r#"{{"type":"Feature","properties":{{"kind":"{kind}"}},"geometry":
+                {{"type":"LineString","coordinates":[[500000,5000000],[500001,5000001]]}}}}"#
+            )
+        })
+        .collect();
+    let text = format!(
+        r#"{{"type":"FeatureCollection","features":[{}]}}"#,
+        features.join(",")
+    );
+    std::fs::write(&path, text).unwrap();
+    assert!(matches!(
+        read(&path, &FROM_FILE),
+        Err(Error::TooManyKinds { .. })
+    ));
+}
