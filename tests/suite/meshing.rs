@@ -33,8 +33,8 @@ fn named_shapes_keep_all_promises() {
 
 #[test]
 fn random_shapes_keep_all_promises() {
-    for seed in 0..300 {
-        verify(&format!("random {seed}"), &cases::random(seed), &[Method::Indirect]);
+    for seed in 0..200 {
+        verify(&format!("random {seed}"), &cases::cruel(seed), &[Method::Indirect]);
     }
 }
 
@@ -43,7 +43,7 @@ fn last_resort_alone_serves_everything() {
     for (name, loops) in cases::named() {
         verify(name, &loops, &[]);
     }
-    for seed in 0..300 {
-        verify(&format!("random {seed}"), &cases::random(seed), &[]);
+    for seed in 0..200 {
+        verify(&format!("random {seed}"), &cases::cruel(seed), &[]);
     }
 }

@@ -131,13 +131,26 @@ impl Draw {
 }
 
 /// A random star-shaped, mostly concave sub-domain with slits, trees, holes and free lines, one a
-/// sector so that they never meet.
-pub fn random(seed: u64) -> Loops {
+/// sector so that they never meet. Features may be far smaller than an edge and edges graded 1:20:
+/// much harder than anything that comes out of `cleanup`.
+pub fn cruel(seed: u64) -> Loops {
     let random = &mut Random(seed);
     let corners = 3 + random.below(12);
-    let size = 10.0;
-    let extent = size * [1.0, 2.0, 5.0, 12.0][random.below(4)];
+    let extent = [10.0, 20.0, 50.0, 120.0][random.below(4)];
     let grade = if random.unit() < 0.3 { random.between(1.0, 20.0) } else { 1.0 };
+    star(random, corners, extent, grade)
+}
+
+/// The same with gaps of about an edge length or more.
+pub fn fair(seed: u64) -> Loops {
+    let random = &mut Random(seed);
+    let corners = 3 + random.below(9);
+    let extent = corners as f64 * 10.0 * random.between(0.8, 2.5);
+    star(random, corners, extent, 1.0)
+}
+
+fn star(random: &mut Random, corners: usize, extent: f64, grade: f64) -> Loops {
+    let size = 10.0;
     let shift = [random.between(-4e5, 4e5), random.between(-4e5, 4e5)];
     let spacing = move |p: Xy| {
         let t = ((p[0] - shift[0]) / extent + 1.0).clamp(0.0, 2.0) / 2.0;
@@ -221,7 +234,8 @@ pub fn named() -> Vec<(&'static str, Loops)> {
     }
     add("comb", polygon(&comb));
     add("slit", with_lines(&square(60.0), &[&[[60.0, 30.0], [20.0, 30.0]]]));
-    add("slit near a side", with_lines(&square(60.0), &[&[[60.0, 3.0], [20.0, 3.0]]]));
+    let side = [[0.0, 0.0], [60.0, 0.0], [60.0, 3.0], [60.0, 60.0], [0.0, 60.0]];
+    add("slit near a side", with_lines(&side, &[&[[60.0, 3.0], [20.0, 3.0]]]));
     add("isolated line of one edge", with_lines(&square(40.0), &[&[[15.0, 20.0], [25.0, 20.0]]]));
     add("line in a tight box", with_lines(&square(12.0), &[&[[4.0, 6.0], [8.0, 6.0]]]));
     let rays: Vec<[Xy; 2]> = (0..24)
