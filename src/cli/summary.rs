@@ -2,7 +2,6 @@
 
 use crate::check::verdict::Verdict;
 use crate::chunk::reader::Mesh;
-use crate::export::Stats;
 use crate::pipeline::job::Job;
 use crate::pipeline::outcome::Estimate;
 use crate::pipeline::outcome::Outcome;
@@ -150,11 +149,6 @@ pub(super) fn planned(cost: &Estimate) -> Summary {
     )
 }
 
-pub(super) fn exported(out: &Path, written: &Stats) -> Summary {
-    let (out, bytes) = (out.display().to_string(), written.bytes);
-    Summary::good(format!("{out}: {bytes} bytes"), json!({"out": out, "bytes": bytes}))
-}
-
 pub(super) fn reported(out: &Path, picture: &Path) -> Summary {
     let (out, picture) = (out.display().to_string(), picture.display().to_string());
     Summary::good(format!("{out}\n{picture}"), json!({"out": out, "picture": picture}))
@@ -168,7 +162,7 @@ pub(super) fn synth(out: &Path, city: &City) -> Summary {
 pub(super) fn info(mesh: &Mesh) -> Summary {
     let index = mesh.index();
     let frame = mesh.frame();
-    let quads: u64 = index.quads();
+    let quads: u64 = index.quads;
     let epsg = index.epsg.map_or("none".to_string(), |it| it.to_string());
     Summary::good(
         format!(

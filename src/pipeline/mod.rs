@@ -20,26 +20,30 @@
 pub mod error;
 mod frame;
 pub mod job;
+mod log;
 pub mod ordered;
 pub mod outcome;
 mod patches;
 pub mod plan;
 pub mod progress;
-//mod report;
+mod report;
 mod tiles;
 
-//pub use report::report;
+pub use report::report;
 
+use crate::check;
 use crate::chunk;
 use crate::chunk::linework::LineWork;
+use crate::chunk::reader::Mesh;
 use crate::chunk::writer::Existing;
 use crate::chunk::writer::IndexRecord;
 use crate::chunk::writer::Place;
 use crate::chunk::writer::Writer;
 use crate::pipeline::error::Error;
 use crate::pipeline::job::Job;
+use crate::pipeline::log::Log;
+use crate::pipeline::outcome::Estimate;
 use crate::pipeline::outcome::Outcome;
-use crate::pipeline::plan::Plan;
 use crate::pipeline::progress::Listener;
 use crate::pipeline::progress::Stopwatch;
 use std::fs;
@@ -55,9 +59,13 @@ pub fn build(job: &Job, listener: Listener) -> Result<Outcome, Error> {
     made
 }
 
-/// The plan of a job and nothing else: what a build will cost.
-pub fn plan(job: &Job, listener: Listener) -> Result<Plan, Error> {
-    pool(job).install(|| plan::plan(job, &Stopwatch::new(listener)))
+/// What a build will cost, from its plan: all but the meshing is done to know it.
+pub fn estimate(job: &Job, listener: Listener) -> Result<Estimate, Error> {
+    pool(job).install(|| {
+        let watch = Stopwatch::new(listener);
+        let plan = plan::plan(job, &watch)?;
+        Ok(Estimate::new(&plan, watch.stages(), rayon::current_num_threads()))
+    })
 }
 
 fn build_here(job: &Job, listener: Listener) -> Result<Outcome, Error> {
@@ -96,7 +104,15 @@ fn build_here(job: &Job, listener: Listener) -> Result<Outcome, Error> {
             input_digest: plan.domain.digest,
         },
     )?;
-    Ok(Outcome { stages: watch.stages() })
+    let verdict = watch.stage("check", 1, |_| -> Result<_, Error> {
+        let verdict = check::check(&Mesh::open(&job.output)?, &check::OPTIONS);
+        let note = if verdict.holds() { "every promise holds" } else { "A PROMISE IS BROKEN" };
+        Ok((verdict, note.to_string()))
+    })?;
+    let outcome = Outcome::new(job, &plan, &findings, verdict, watch.stages());
+    let log = Log::new(&outcome.stages, outcome.peak_memory_bytes);
+    (log.write(&job.output)).map_err(|it| Error::Write(job.output.clone(), it))?;
+    Ok(outcome)
 }
 
 /// Refuses at once what would only fail after the work: an output that exists or cannot be made.
