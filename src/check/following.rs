@@ -34,6 +34,7 @@ pub(crate) fn check(mesh: &Mesh, allowed_m: f64) -> Promise {
         };
         let name = || format!("line {line} (feature {})", lines.source[line]);
         follow.tears(&chains, &name, &mut promise);
+        follow.directions(&chains, &name, &mut promise);
         totals.farthest_m = totals
             .farthest_m
             .max(follow.line_to_mesh(&name, &mut promise));
@@ -116,6 +117,47 @@ impl Follow<'_> {
                 });
             }
         }
+    }
+
+    /// Chains run as the line was digitised. Asked over stretches that are long beside the
+    /// tolerance, since within it nodes may lie anywhere.
+    fn directions(&self, chains: &[Vec<Step>], name: &dyn Fn() -> String, promise: &mut Promise) {
+        let long_m = 4.0 * self.allowed_m;
+        for chain in chains {
+            let mut begin = 0;
+            for end in 0..chain.len() {
+                let (a, b) = (&chain[begin], &chain[end]);
+                let line = minus(self.place_at(b.to_m), self.place_at(a.from_m));
+                if line[0].hypot(line[1]) < long_m {
+                    continue;
+                }
+                let (p, q) = (self.nodes[a.from as usize], self.nodes[b.to as usize]);
+                let mesh = minus(q, p);
+                if line[0] * mesh[0] + line[1] * mesh[1] <= 0.0 {
+                    promise.broken(projected(p, self.origin_m), || {
+                        format!(
+                            "{}: against its direction at station {:.3} m",
+                            name(),
+                            a.from_m
+                        )
+                    });
+                }
+                begin = end + 1;
+                if begin == chain.len() {
+                    break;
+                }
+            }
+        }
+    }
+
+    /// The point of the line at a station, local metres.
+    fn place_at(&self, station_m: f64) -> Xy {
+        let after = self.stations_m.partition_point(|&s| s <= station_m);
+        let k = after.clamp(1, self.places.len() - 1);
+        let (a, b) = (self.places[k - 1], self.places[k]);
+        let length = self.stations_m[k] - self.stations_m[k - 1];
+        let t = ((station_m - self.stations_m[k - 1]) / length).clamp(0.0, 1.0);
+        [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
     }
 
     /// Largest distance of the line's samples from its mesh edges; those too far are defects.
@@ -214,4 +256,8 @@ impl Follow<'_> {
             nearest(0, segments)
         }
     }
+}
+
+fn minus(a: Xy, b: Xy) -> Xy {
+    [a[0] - b[0], a[1] - b[1]]
 }

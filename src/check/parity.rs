@@ -7,9 +7,6 @@ use crate::chunk::views::CertificateView;
 use crate::chunk::views::FrameView;
 use crate::partition::subdomains::OUTSIDE;
 
-/// Relative difference that summing in another order may make.
-const SUM_REL: f64 = 1e-9;
-
 pub(crate) fn check(mesh: &Mesh) -> [Promise; 2] {
     let frame = mesh.frame();
     let origin_m = mesh.index().grid.origin_m;
@@ -33,22 +30,22 @@ pub(crate) fn check(mesh: &Mesh) -> [Promise; 2] {
     [bounds, proof]
 }
 
-/// What count `n` costs on `curve`, as `Goals::cost` defines it.
-fn cost(frame: &FrameView, curve: usize, n: u32) -> f64 {
+/// What count `n` costs on `curve`, as `Goals::cost` defines it, in whole units.
+fn cost(frame: &FrameView, unit: f64, curve: usize, n: u32) -> i64 {
     let goal = frame.goal[curve].max(f64::from(frame.lower[curve]));
     let n = f64::from(n);
-    frame.weight[curve] * ((n / goal).max(goal / n) - 1.0)
+    (frame.weight[curve] * ((n / goal).max(goal / n) - 1.0) / unit).round() as i64
 }
 
 /// The cheapest count of a curve, its cost, and what the cheapest count of other parity costs more.
 struct Choice {
     count: u32,
-    cost: f64,
-    /// Infinite if the curve has no other parity.
-    change: f64,
+    cost: i64,
+    /// `None` if the curve has no other parity.
+    change: Option<i64>,
 }
 
-fn choice(frame: &FrameView, curve: usize) -> Choice {
+fn choice(frame: &FrameView, unit: f64, curve: usize) -> Choice {
     let (lower, upper) = (
         frame.lower[curve],
         frame.upper[curve].max(frame.lower[curve]),
@@ -59,119 +56,130 @@ fn choice(frame: &FrameView, curve: usize) -> Choice {
     let best = |parity: u32| {
         (near.clone())
             .filter(|n| n % 2 == parity)
-            .map(|n| (cost(frame, curve, n), n))
-            .fold((f64::INFINITY, 0), |a, b| if b.0 < a.0 { b } else { a })
+            .map(|n| (cost(frame, unit, curve, n), n))
+            .min()
     };
-    let (even, odd) = (best(0), best(1));
-    let (mine, other) = if even.0 < odd.0 {
-        (even, odd)
-    } else {
-        (odd, even)
+    let (mine, other) = match (best(0), best(1)) {
+        (Some(even), Some(odd)) => (even.min(odd), Some(even.max(odd))),
+        (even, odd) => (even.or(odd).unwrap_or((0, 0)), None),
     };
     Choice {
         count: mine.1,
         cost: mine.0,
-        change: other.0 - mine.0,
+        change: other.map(|it| it.0 - mine.0),
     }
 }
 
 fn verify(frame: &FrameView, given: &CertificateView, promise: &mut Promise) {
+    let unit = given.cost_unit;
     let choices: Vec<Choice> = (0..frame.curves())
-        .map(|curve| choice(frame, curve))
+        .map(|c| choice(frame, unit, c))
         .collect();
-    let base: f64 = choices.iter().map(|it| it.cost).sum();
-    let objective: f64 = (0..frame.curves())
-        .map(|curve| cost(frame, curve, frame.count(curve)))
+    let base: i64 = choices.iter().map(|it| it.cost).sum();
+    let objective: i64 = (0..frame.curves())
+        .map(|curve| cost(frame, unit, curve, frame.count(curve)))
         .sum();
-    let differs = |a: f64, b: f64| (a - b).abs() > SUM_REL * (1.0 + a.abs().max(b.abs()));
+    sets_are_odd(frame, given, &choices, promise);
+    pays_no_more_than_it_costs(frame, given, &choices, promise);
+    let bound = base + (given.set_dual2.iter().sum::<i64>() + 1) / 2;
     for (what, said, counted) in [
         ("objective", given.objective, objective),
         ("base", given.base, base),
+        ("bound", given.bound, bound),
     ] {
-        if differs(said, counted) {
+        if said != counted {
             promise.broken(None, || {
-                format!("{what} {said} is claimed, it is {counted}")
+                format!("{what}: {said} is claimed, {counted} counted")
             });
         }
     }
-    if given.bound > objective * (1.0 + SUM_REL) + SUM_REL {
-        let bound = given.bound;
+    if bound > objective {
         promise.broken(None, || {
             format!("the bound {bound} is above the objective {objective}")
         });
     }
-    let proven = base + duals(frame, given, &choices, promise);
-    let over_base = (objective - base).max(f64::MIN_POSITIVE);
+    let gap = (objective - bound) as f64 / ((objective - base).max(1)) as f64;
     promise.says(format!(
-        "objective {objective:.6}, base {base:.6}, bound {:.6} claimed, {proven:.6} from duals; \
-         gap {:.3e}",
-        given.bound,
-        (objective - given.bound).max(0.0) / over_base
+        "objective {objective}, bound {bound}, free rounding {base} (units of {unit:e}); gap {gap:.6}"
     ));
 }
 
-/// The sum of the duals, after making sure that they are feasible.
-fn duals(
+/// Each set holds an odd number of sub-domains that are odd under the cheapest counts, and pays.
+fn sets_are_odd(
     frame: &FrameView,
     given: &CertificateView,
     choices: &[Choice],
     promise: &mut Promise,
-) -> f64 {
-    let is_odd = odd_subdomains(frame, choices);
-    // Curve by curve: sum of the duals of the sets that it leaves.
-    let mut load = vec![0.0_f64; frame.curves()];
-    let mut sum = 0.0;
-    let mut in_set = vec![false; frame.subdomains()];
-    for set in 0..given.set_dual.len() {
-        let (members, dual) = (given.members(set), given.set_dual[set]);
-        let odd = members.iter().filter(|&&s| is_odd[s as usize]).count() % 2 == 1;
-        if dual.is_nan() || dual < 0.0 || (dual > 0.0 && !odd) {
-            promise.broken(None, || {
-                format!("set {set} is not odd or its dual is {dual}")
-            });
-            continue;
-        }
-        members.iter().for_each(|&s| in_set[s as usize] = true);
-        for curve in leaving(frame, members, &in_set) {
-            load[curve] += dual;
-        }
-        members.iter().for_each(|&s| in_set[s as usize] = false);
-        sum += dual;
-    }
-    for (curve, &load) in load.iter().enumerate() {
-        if load > choices[curve].change * (1.0 + SUM_REL) + SUM_REL {
-            let change = choices[curve].change;
-            promise.broken(None, || {
-                format!("curve {curve} carries duals of {load}, more than its cost {change}")
-            });
-        }
-    }
-    sum
-}
-
-/// Sub-domains with an odd number of boundary edges if each curve took its cheapest count.
-fn odd_subdomains(frame: &FrameView, choices: &[Choice]) -> Vec<bool> {
-    let mut is_odd = vec![false; frame.subdomains()];
-    for (curve, choice) in choices.iter().enumerate() {
+) {
+    let sets = given.set_parent.len();
+    let mut odd = vec![false; sets];
+    for (curve, _) in choices
+        .iter()
+        .enumerate()
+        .filter(|(_, it)| it.count % 2 == 1)
+    {
         for side in [frame.left[curve], frame.right[curve]] {
-            if side != OUTSIDE && choice.count % 2 == 1 {
-                is_odd[side as usize] ^= true;
+            let set = if side == OUTSIDE {
+                NONE
+            } else {
+                given.set_of[side as usize]
+            };
+            if set != NONE {
+                odd[set as usize] ^= true;
             }
         }
     }
-    is_odd
+    // Children come after their parents, so each is complete when it is added to its parent.
+    for set in (0..sets).rev() {
+        if !odd[set] || given.set_dual2[set] <= 0 {
+            promise.broken(None, || {
+                format!("set {set} of the certificate proves nothing")
+            });
+        }
+        let parent = given.set_parent[set];
+        if parent != NONE && odd[set] {
+            odd[parent as usize] ^= true;
+        }
+    }
 }
 
-/// The curves with exactly one side in the set.
-fn leaving(frame: &FrameView, members: &[u32], in_set: &[bool]) -> Vec<usize> {
-    let inside = |side: u32| side != OUTSIDE && in_set[side as usize];
-    let mut curves: Vec<usize> = (members.iter())
-        .flat_map(|&s| frame.walks_of(s as usize))
-        .flat_map(|walk| frame.halves_of(walk))
-        .map(|&half| (half >> 1) as usize)
-        .filter(|&curve| inside(frame.left[curve]) != inside(frame.right[curve]))
-        .collect();
-    curves.sort_unstable();
-    curves.dedup();
-    curves
+/// No set, or none around it.
+const NONE: u32 = u32::MAX;
+
+/// The sets with exactly one side of a curve pay together at most what changing it costs.
+fn pays_no_more_than_it_costs(
+    frame: &FrameView,
+    given: &CertificateView,
+    choices: &[Choice],
+    promise: &mut Promise,
+) {
+    let least = |side: u32| {
+        if side == OUTSIDE {
+            NONE
+        } else {
+            given.set_of[side as usize]
+        }
+    };
+    for (curve, choice) in choices.iter().enumerate() {
+        let Some(change) = choice.change else {
+            continue;
+        };
+        let (mut a, mut b) = (least(frame.left[curve]), least(frame.right[curve]));
+        let mut paid2 = 0;
+        // Parents precede children, so the later of two different sets does not hold the other.
+        while a != b {
+            let inner = if b == NONE || (a != NONE && a > b) {
+                &mut a
+            } else {
+                &mut b
+            };
+            paid2 += given.set_dual2[*inner as usize];
+            *inner = given.set_parent[*inner as usize];
+        }
+        if paid2 > 2 * change {
+            promise.broken(None, || {
+                format!("curve {curve} is paid {paid2} half units, its change costs {change} units")
+            });
+        }
+    }
 }

@@ -3,20 +3,47 @@
 use crate::geometry::point::Xy;
 use crate::intervals::goals::Goals;
 use crate::noding::arrangement::Piece;
+use crate::parity::balance::Balance;
+use crate::parity::programme::COST_UNIT;
 use crate::partition::subdomains::Subdomain;
 use crate::partition::subdomains::SubdomainId;
 
-/// Proof of how good the interval counts are; see `schemas/frame.fbs`.
+/// Proof of how good the interval counts are, in whole cost units; see `schemas/frame.fbs`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Certificate {
+    /// One cost unit.
+    pub cost_unit: f64,
     /// Cost of the counts.
-    pub objective: f64,
+    pub objective: i64,
     /// Cost if each curve took its own cheapest count.
-    pub base: f64,
-    /// Lower bound of the cost of any counts that make every sub-domain even, as claimed.
-    pub bound: f64,
-    /// Odd sets of sub-domains with the dual (>= 0) of each.
-    pub odd_sets: Vec<(Vec<SubdomainId>, f64)>,
+    pub base: i64,
+    /// Lower bound of the cost of any counts that make every sub-domain even.
+    pub bound: i64,
+    /// The optimum that HiGHS claims, if it was asked; as a cost, not in units.
+    pub claimed: Option<f64>,
+    /// Odd set -> the next larger set around it, or `u32::MAX`; parents precede children.
+    pub set_parent: Vec<u32>,
+    /// Odd set -> twice its dual, positive.
+    pub set_dual2: Vec<i64>,
+    /// Sub-domain -> the least set that holds it, or `u32::MAX`.
+    pub set_of: Vec<u32>,
+}
+
+impl From<Balance> for Certificate {
+    fn from(balance: Balance) -> Certificate {
+        // Costs in a balance are whole multiples of the unit.
+        let units = |cost: f64| (cost / COST_UNIT).round() as i64;
+        Certificate {
+            cost_unit: COST_UNIT,
+            objective: units(balance.objective),
+            base: units(balance.base),
+            bound: units(balance.bound),
+            claimed: balance.claimed,
+            set_parent: balance.cuts.parent,
+            set_dual2: balance.cuts.value2,
+            set_of: balance.cuts.set_of,
+        }
+    }
 }
 
 /// The frame of a mesh, with all its nodes on curves.

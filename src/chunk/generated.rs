@@ -9,10 +9,14 @@
 )]
 
 #[rustfmt::skip]
+#[path = "generated/chunk_generated.rs"]
 pub mod chunk;
 #[rustfmt::skip]
+#[path = "generated/frame_generated.rs"]
 pub mod frame;
 #[rustfmt::skip]
+#[path = "generated/index_generated.rs"]
 pub mod index;
 #[rustfmt::skip]
+#[path = "generated/lines_generated.rs"]
 pub mod lines;

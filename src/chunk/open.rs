@@ -115,6 +115,7 @@ impl Scalar for u16 {}
 impl Scalar for u32 {}
 impl Scalar for u64 {}
 impl Scalar for i32 {}
+impl Scalar for i64 {}
 impl Scalar for f64 {}
 
 /// The vector as a slice into the mapping.
@@ -203,12 +204,14 @@ fn frame_view<'a>(table: &frame_file::Frame<'a>) -> FrameView<'a> {
         upper: slice(table.upper()),
         weight: slice(table.weight()),
         certificate: table.certificate().map(|it| CertificateView {
+            cost_unit: it.cost_unit(),
             objective: it.objective(),
             base: it.base(),
             bound: it.bound(),
-            set_start: slice(it.set_start()),
-            set_members: slice(it.set_members()),
-            set_dual: slice(it.set_dual()),
+            claimed: (!it.claimed().is_nan()).then(|| it.claimed()),
+            set_parent: slice(it.set_parent()),
+            set_dual2: slice(it.set_dual2()),
+            set_of: slice(it.set_of()),
         }),
     }
 }

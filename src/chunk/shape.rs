@@ -82,13 +82,17 @@ pub(crate) fn frame(view: &FrameView) -> Shape {
     match &view.certificate {
         None => Ok(()),
         Some(it) => {
-            offsets(
-                "set_start",
-                it.set_start,
-                it.set_dual.len(),
-                it.set_members.len(),
-            )?;
-            below("set_members", it.set_members, view.size_m.len())
+            let sets = it.set_parent.len();
+            length("set_dual2", it.set_dual2.len(), sets)?;
+            length("set_of", it.set_of.len(), view.size_m.len())?;
+            let known = |&set: &u32| set == u32::MAX || (set as usize) < sets;
+            expect(it.set_of.iter().all(known), || {
+                "an entry of set_of names no set".into()
+            })?;
+            // Parents first: then walking outwards ends.
+            let nested = (0..).zip(it.set_parent);
+            let mut rises = nested.map(|(set, &parent)| parent == u32::MAX || parent < set);
+            expect(rises.all(|it: bool| it), || "sets are not nested".into())
         }
     }
 }

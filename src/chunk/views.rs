@@ -62,28 +62,25 @@ impl IndexView<'_> {
     }
 }
 
-/// The certificate of the interval counts.
+/// The certificate of the interval counts, in whole cost units.
 #[derive(Clone, Copy, Debug)]
 pub struct CertificateView<'a> {
+    /// One cost unit.
+    pub cost_unit: f64,
     /// Cost of the counts, as parity computed it.
-    pub objective: f64,
+    pub objective: i64,
     /// Cost if each curve took its own cheapest count.
-    pub base: f64,
+    pub base: i64,
     /// Lower bound, as claimed.
-    pub bound: f64,
-    /// Odd set -> members, CSR.
-    pub set_start: &'a [u32],
-    /// Sub-domains, set by set.
-    pub set_members: &'a [u32],
-    /// Odd set -> its dual.
-    pub set_dual: &'a [f64],
-}
-
-impl<'a> CertificateView<'a> {
-    /// The sub-domains of odd set `set`.
-    pub fn members(&self, set: usize) -> &'a [u32] {
-        &self.set_members[range(self.set_start, set)]
-    }
+    pub bound: i64,
+    /// The optimum that HiGHS claims.
+    pub claimed: Option<f64>,
+    /// Odd set -> the next larger set around it, or `u32::MAX`.
+    pub set_parent: &'a [u32],
+    /// Odd set -> twice its dual.
+    pub set_dual2: &'a [i64],
+    /// Sub-domain -> the least set that holds it, or `u32::MAX`.
+    pub set_of: &'a [u32],
 }
 
 /// The frame: boundary nodes, curves, pieces, sub-domains.

@@ -23,18 +23,15 @@ fn certificate<'a>(
     builder: &mut Builder<'a>,
     given: &Certificate,
 ) -> WIPOffset<frame_file::Certificate<'a>> {
-    let start = offsets(given.odd_sets.iter().map(|(members, _)| members.len()));
-    let members: Vec<u32> = (given.odd_sets.iter())
-        .flat_map(|(members, _)| members.iter().copied())
-        .collect();
-    let dual: Vec<f64> = given.odd_sets.iter().map(|(_, dual)| *dual).collect();
     let args = frame_file::CertificateArgs {
+        cost_unit: given.cost_unit,
         objective: given.objective,
         base: given.base,
         bound: given.bound,
-        set_start: Some(builder.create_vector(&start)),
-        set_members: Some(builder.create_vector(&members)),
-        set_dual: Some(builder.create_vector(&dual)),
+        claimed: given.claimed.unwrap_or(f64::NAN),
+        set_parent: Some(builder.create_vector(&given.set_parent)),
+        set_dual2: Some(builder.create_vector(&given.set_dual2)),
+        set_of: Some(builder.create_vector(&given.set_of)),
     };
     frame_file::Certificate::create(builder, &args)
 }
@@ -47,15 +44,13 @@ fn frame_bytes(frame: &Frame) -> usize {
         .map(|s| s.walks.len())
         .sum::<usize>();
     let curves = frame.left.len();
-    let sets = (frame.certificate.iter().flat_map(|it| &it.odd_sets))
-        .map(|(members, _)| 12 + 4 * members.len())
-        .sum::<usize>();
+    let sets = (frame.certificate.as_ref()).map_or(0, |it| 12 * it.set_parent.len());
     16 * frame.nodes.len()
         + 4 * (frame.curve_nodes.len() + frame.piece_start.len())
         + 20 * frame.pieces.len()
         // flags, sides, start, goal, bounds, weight, two half-curves
         + 45 * curves
-        + 12 * frame.subdomains.len()
+        + 16 * frame.subdomains.len()
         + 4 * walks
         + sets
 }

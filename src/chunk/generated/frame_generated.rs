@@ -6,8 +6,11 @@ extern crate alloc;
 pub enum CertificateOffset {}
 #[derive(Copy, Clone, PartialEq)]
 
-/// Proof of how good the interval counts are. The bound is that of a minimum-weight T-join:
-/// base + sum of duals <= cost of any counts that make every sub-domain even.
+/// Proof of how good the interval counts are, in whole cost units. The cheapest counts leave some
+/// sub-domains odd; changing the parity of a curve costs extra. Take a set with an odd number of odd
+/// sub-domains: some curve with exactly one side in it must change. If each set pays its dual and
+/// no curve is paid more than its change costs, half the sum of the duals is a lower bound on what
+/// all changes cost (Edmonds and Johnson 1973). The sets are nested or disjoint.
 pub struct Certificate<'a> {
   pub _tab: ::flatbuffers::Table<'a>,
 }
@@ -21,12 +24,14 @@ impl<'a> ::flatbuffers::Follow<'a> for Certificate<'a> {
 }
 
 impl<'a> Certificate<'a> {
-  pub const VT_OBJECTIVE: ::flatbuffers::VOffsetT = 4;
-  pub const VT_BASE: ::flatbuffers::VOffsetT = 6;
-  pub const VT_BOUND: ::flatbuffers::VOffsetT = 8;
-  pub const VT_SET_START: ::flatbuffers::VOffsetT = 10;
-  pub const VT_SET_MEMBERS: ::flatbuffers::VOffsetT = 12;
-  pub const VT_SET_DUAL: ::flatbuffers::VOffsetT = 14;
+  pub const VT_COST_UNIT: ::flatbuffers::VOffsetT = 4;
+  pub const VT_OBJECTIVE: ::flatbuffers::VOffsetT = 6;
+  pub const VT_BASE: ::flatbuffers::VOffsetT = 8;
+  pub const VT_BOUND: ::flatbuffers::VOffsetT = 10;
+  pub const VT_CLAIMED: ::flatbuffers::VOffsetT = 12;
+  pub const VT_SET_PARENT: ::flatbuffers::VOffsetT = 14;
+  pub const VT_SET_DUAL2: ::flatbuffers::VOffsetT = 16;
+  pub const VT_SET_OF: ::flatbuffers::VOffsetT = 18;
 
   #[inline]
   pub unsafe fn init_from_table(table: ::flatbuffers::Table<'a>) -> Self {
@@ -38,64 +43,81 @@ impl<'a> Certificate<'a> {
     args: &'args CertificateArgs<'args>
   ) -> ::flatbuffers::WIPOffset<Certificate<'bldr>> {
     let mut builder = CertificateBuilder::new(_fbb);
+    builder.add_claimed(args.claimed);
     builder.add_bound(args.bound);
     builder.add_base(args.base);
     builder.add_objective(args.objective);
-    if let Some(x) = args.set_dual { builder.add_set_dual(x); }
-    if let Some(x) = args.set_members { builder.add_set_members(x); }
-    if let Some(x) = args.set_start { builder.add_set_start(x); }
+    builder.add_cost_unit(args.cost_unit);
+    if let Some(x) = args.set_of { builder.add_set_of(x); }
+    if let Some(x) = args.set_dual2 { builder.add_set_dual2(x); }
+    if let Some(x) = args.set_parent { builder.add_set_parent(x); }
     builder.finish()
   }
 
 
-  /// Cost of the counts (see goal), as the solver's side computed it.
+  /// One cost unit; the cost of a count is rounded to whole units.
   #[inline]
-  pub fn objective(&self) -> f64 {
+  pub fn cost_unit(&self) -> f64 {
     // Safety:
     // Created from valid Table for this object
     // which contains a valid value in this slot
-    unsafe { self._tab.get::<f64>(Certificate::VT_OBJECTIVE, Some(0.0)).unwrap()}
+    unsafe { self._tab.get::<f64>(Certificate::VT_COST_UNIT, Some(0.0)).unwrap()}
   }
-  /// Cost if each curve took its own cheapest count, parity ignored.
+  /// Cost of the counts, units.
   #[inline]
-  pub fn base(&self) -> f64 {
+  pub fn objective(&self) -> i64 {
     // Safety:
     // Created from valid Table for this object
     // which contains a valid value in this slot
-    unsafe { self._tab.get::<f64>(Certificate::VT_BASE, Some(0.0)).unwrap()}
+    unsafe { self._tab.get::<i64>(Certificate::VT_OBJECTIVE, Some(0)).unwrap()}
   }
-  /// Lower bound of the cost of any even counts, as claimed.
+  /// Cost if each curve took its own cheapest count, parity ignored, units.
   #[inline]
-  pub fn bound(&self) -> f64 {
+  pub fn base(&self) -> i64 {
     // Safety:
     // Created from valid Table for this object
     // which contains a valid value in this slot
-    unsafe { self._tab.get::<f64>(Certificate::VT_BOUND, Some(0.0)).unwrap()}
+    unsafe { self._tab.get::<i64>(Certificate::VT_BASE, Some(0)).unwrap()}
   }
-  /// One an odd set, CSR into set_members.
+  /// Lower bound of the cost of any even counts, units: base + half the duals, rounded up.
   #[inline]
-  pub fn set_start(&self) -> ::flatbuffers::Vector<'a, u32> {
+  pub fn bound(&self) -> i64 {
     // Safety:
     // Created from valid Table for this object
     // which contains a valid value in this slot
-    unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, u32>>>(Certificate::VT_SET_START, None).unwrap()}
+    unsafe { self._tab.get::<i64>(Certificate::VT_BOUND, Some(0)).unwrap()}
   }
-  /// Sub-domains of each set. Under the cheapest counts an odd number of them is odd.
+  /// The optimum that HiGHS claims, units of cost; NaN if it was not asked. No part of the proof.
   #[inline]
-  pub fn set_members(&self) -> ::flatbuffers::Vector<'a, u32> {
+  pub fn claimed(&self) -> f64 {
     // Safety:
     // Created from valid Table for this object
     // which contains a valid value in this slot
-    unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, u32>>>(Certificate::VT_SET_MEMBERS, None).unwrap()}
+    unsafe { self._tab.get::<f64>(Certificate::VT_CLAIMED, Some(0.0)).unwrap()}
   }
-  /// One an odd set: its dual, >= 0, in units of cost. Over each curve the duals of the sets that
-  /// have exactly one of its sides sum to at most the extra cost of changing its parity.
+  /// One a set: the next larger set around it, a lower row; 4294967295 if there is none.
   #[inline]
-  pub fn set_dual(&self) -> ::flatbuffers::Vector<'a, f64> {
+  pub fn set_parent(&self) -> ::flatbuffers::Vector<'a, u32> {
     // Safety:
     // Created from valid Table for this object
     // which contains a valid value in this slot
-    unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, f64>>>(Certificate::VT_SET_DUAL, None).unwrap()}
+    unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, u32>>>(Certificate::VT_SET_PARENT, None).unwrap()}
+  }
+  /// One a set: twice its dual, units; positive.
+  #[inline]
+  pub fn set_dual2(&self) -> ::flatbuffers::Vector<'a, i64> {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, i64>>>(Certificate::VT_SET_DUAL2, None).unwrap()}
+  }
+  /// One a sub-domain: the least set that holds it; 4294967295 if there is none.
+  #[inline]
+  pub fn set_of(&self) -> ::flatbuffers::Vector<'a, u32> {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, u32>>>(Certificate::VT_SET_OF, None).unwrap()}
   }
 }
 
@@ -105,34 +127,40 @@ impl ::flatbuffers::Verifiable for Certificate<'_> {
     v: &mut ::flatbuffers::Verifier, pos: usize
   ) -> Result<(), ::flatbuffers::InvalidFlatbuffer> {
     v.visit_table(pos)?
-     .visit_field::<f64>("objective", Self::VT_OBJECTIVE, false)?
-     .visit_field::<f64>("base", Self::VT_BASE, false)?
-     .visit_field::<f64>("bound", Self::VT_BOUND, false)?
-     .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u32>>>("set_start", Self::VT_SET_START, true)?
-     .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u32>>>("set_members", Self::VT_SET_MEMBERS, true)?
-     .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, f64>>>("set_dual", Self::VT_SET_DUAL, true)?
+     .visit_field::<f64>("cost_unit", Self::VT_COST_UNIT, false)?
+     .visit_field::<i64>("objective", Self::VT_OBJECTIVE, false)?
+     .visit_field::<i64>("base", Self::VT_BASE, false)?
+     .visit_field::<i64>("bound", Self::VT_BOUND, false)?
+     .visit_field::<f64>("claimed", Self::VT_CLAIMED, false)?
+     .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u32>>>("set_parent", Self::VT_SET_PARENT, true)?
+     .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, i64>>>("set_dual2", Self::VT_SET_DUAL2, true)?
+     .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u32>>>("set_of", Self::VT_SET_OF, true)?
      .finish();
     Ok(())
   }
 }
 pub struct CertificateArgs<'a> {
-    pub objective: f64,
-    pub base: f64,
-    pub bound: f64,
-    pub set_start: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u32>>>,
-    pub set_members: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u32>>>,
-    pub set_dual: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, f64>>>,
+    pub cost_unit: f64,
+    pub objective: i64,
+    pub base: i64,
+    pub bound: i64,
+    pub claimed: f64,
+    pub set_parent: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u32>>>,
+    pub set_dual2: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, i64>>>,
+    pub set_of: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u32>>>,
 }
 impl<'a> Default for CertificateArgs<'a> {
   #[inline]
   fn default() -> Self {
     CertificateArgs {
-      objective: 0.0,
-      base: 0.0,
-      bound: 0.0,
-      set_start: None, // required field
-      set_members: None, // required field
-      set_dual: None, // required field
+      cost_unit: 0.0,
+      objective: 0,
+      base: 0,
+      bound: 0,
+      claimed: 0.0,
+      set_parent: None, // required field
+      set_dual2: None, // required field
+      set_of: None, // required field
     }
   }
 }
@@ -143,28 +171,36 @@ pub struct CertificateBuilder<'a: 'b, 'b, A: ::flatbuffers::Allocator + 'a> {
 }
 impl<'a: 'b, 'b, A: ::flatbuffers::Allocator + 'a> CertificateBuilder<'a, 'b, A> {
   #[inline]
-  pub fn add_objective(&mut self, objective: f64) {
-    self.fbb_.push_slot::<f64>(Certificate::VT_OBJECTIVE, objective, 0.0);
+  pub fn add_cost_unit(&mut self, cost_unit: f64) {
+    self.fbb_.push_slot::<f64>(Certificate::VT_COST_UNIT, cost_unit, 0.0);
   }
   #[inline]
-  pub fn add_base(&mut self, base: f64) {
-    self.fbb_.push_slot::<f64>(Certificate::VT_BASE, base, 0.0);
+  pub fn add_objective(&mut self, objective: i64) {
+    self.fbb_.push_slot::<i64>(Certificate::VT_OBJECTIVE, objective, 0);
   }
   #[inline]
-  pub fn add_bound(&mut self, bound: f64) {
-    self.fbb_.push_slot::<f64>(Certificate::VT_BOUND, bound, 0.0);
+  pub fn add_base(&mut self, base: i64) {
+    self.fbb_.push_slot::<i64>(Certificate::VT_BASE, base, 0);
   }
   #[inline]
-  pub fn add_set_start(&mut self, set_start: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , u32>>) {
-    self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Certificate::VT_SET_START, set_start);
+  pub fn add_bound(&mut self, bound: i64) {
+    self.fbb_.push_slot::<i64>(Certificate::VT_BOUND, bound, 0);
   }
   #[inline]
-  pub fn add_set_members(&mut self, set_members: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , u32>>) {
-    self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Certificate::VT_SET_MEMBERS, set_members);
+  pub fn add_claimed(&mut self, claimed: f64) {
+    self.fbb_.push_slot::<f64>(Certificate::VT_CLAIMED, claimed, 0.0);
   }
   #[inline]
-  pub fn add_set_dual(&mut self, set_dual: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , f64>>) {
-    self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Certificate::VT_SET_DUAL, set_dual);
+  pub fn add_set_parent(&mut self, set_parent: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , u32>>) {
+    self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Certificate::VT_SET_PARENT, set_parent);
+  }
+  #[inline]
+  pub fn add_set_dual2(&mut self, set_dual2: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , i64>>) {
+    self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Certificate::VT_SET_DUAL2, set_dual2);
+  }
+  #[inline]
+  pub fn add_set_of(&mut self, set_of: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , u32>>) {
+    self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Certificate::VT_SET_OF, set_of);
   }
   #[inline]
   pub fn new(_fbb: &'b mut ::flatbuffers::FlatBufferBuilder<'a, A>) -> CertificateBuilder<'a, 'b, A> {
@@ -177,9 +213,9 @@ impl<'a: 'b, 'b, A: ::flatbuffers::Allocator + 'a> CertificateBuilder<'a, 'b, A>
   #[inline]
   pub fn finish(self) -> ::flatbuffers::WIPOffset<Certificate<'a>> {
     let o = self.fbb_.end_table(self.start_);
-    self.fbb_.required(o, Certificate::VT_SET_START,"set_start");
-    self.fbb_.required(o, Certificate::VT_SET_MEMBERS,"set_members");
-    self.fbb_.required(o, Certificate::VT_SET_DUAL,"set_dual");
+    self.fbb_.required(o, Certificate::VT_SET_PARENT,"set_parent");
+    self.fbb_.required(o, Certificate::VT_SET_DUAL2,"set_dual2");
+    self.fbb_.required(o, Certificate::VT_SET_OF,"set_of");
     ::flatbuffers::WIPOffset::new(o.value())
   }
 }
@@ -187,12 +223,14 @@ impl<'a: 'b, 'b, A: ::flatbuffers::Allocator + 'a> CertificateBuilder<'a, 'b, A>
 impl ::core::fmt::Debug for Certificate<'_> {
   fn fmt(&self, f: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
     let mut ds = f.debug_struct("Certificate");
+      ds.field("cost_unit", &self.cost_unit());
       ds.field("objective", &self.objective());
       ds.field("base", &self.base());
       ds.field("bound", &self.bound());
-      ds.field("set_start", &self.set_start());
-      ds.field("set_members", &self.set_members());
-      ds.field("set_dual", &self.set_dual());
+      ds.field("claimed", &self.claimed());
+      ds.field("set_parent", &self.set_parent());
+      ds.field("set_dual2", &self.set_dual2());
+      ds.field("set_of", &self.set_of());
       ds.finish()
   }
 }
