@@ -125,7 +125,7 @@ fn close(graph: &mut Graph, thin: &Thin, face: &Face) -> bool {
     }
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
     pairs.iter().any(|&(_, node, edge)| {
-        graph.edges[edge as usize].alive && join(graph, node, edge, 0.25, thin.share).is_some()
+        join(graph, node, edge, 0.25, thin.share).is_some()
     })
 }
 
@@ -143,7 +143,7 @@ fn drop_loop(graph: &mut Graph, face: &Face) -> bool {
     }
     let at = graph.point(face.walk[0].1);
     for &(edge, _) in &face.walk {
-        if graph.edges[edge as usize].alive {
+        if let Some(edge) = graph.current(edge) {
             graph.delete(edge, Reason::SmallLoop);
         }
     }

@@ -231,6 +231,16 @@ impl<'a> Graph<'a> {
             .find(|&e| self.edges[e as usize].other(u) == v)
     }
 
+    /// The edge itself, or the one that replaced it between the same nodes: what is tried and taken
+    /// back leaves equal edges with new ids.
+    pub(super) fn current(&self, edge: u32) -> Option<u32> {
+        let it = &self.edges[edge as usize];
+        if it.alive {
+            return Some(edge);
+        }
+        self.find(it.ends[0], it.ends[1])
+    }
+
     pub(super) fn point(&self, node: u32) -> Point {
         self.at[node as usize]
     }

@@ -217,6 +217,7 @@ fn middle(a: Point, b: Point) -> Point {
 /// Joins a node to an edge that passes it: with the nearer end if that is near, else the node moves
 /// to its foot, or the edge bends to the node, whichever is the less important.
 pub(super) fn join(graph: &mut Graph, node: u32, edge: u32, near: f64, share: f64) -> Option<u32> {
+    let edge = graph.current(edge)?;
     let it = &graph.edges[edge as usize];
     let (ends, rank, size_m) = (it.ends, it.rank, it.size_m);
     let (a, b) = graph.ends_m(edge);
@@ -257,8 +258,6 @@ pub(super) fn join(graph: &mut Graph, node: u32, edge: u32, near: f64, share: f6
         graph.note(what, graph.point(landed), gap);
         return Some(landed);
     }
-    // a failed landing may have replaced the edge by an equal one
-    let edge = graph.find(ends[0], ends[1])?;
     if !bends && graph.bend(edge, Bend::To(node), share).is_some() {
         graph.note(what, moved[0], gap);
         return Some(node);
