@@ -150,7 +150,7 @@ fn draft(method: Method, visits: &Visits, loops: &Loops) -> Option<Draft> {
     match method {
         Method::Mapping => mapping::mesh(visits, loops),
         Method::Looping => looping::mesh(visits, loops.size_m),
-        Method::Strip => None,
+        Method::Strip => strip::mesh(visits, loops),
         Method::Indirect => {
             let inner = scatter::scatter(visits, loops.size_m);
             let triangles = triangulate(visits, &inner)?;

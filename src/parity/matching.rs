@@ -292,7 +292,7 @@ impl<'a> Matching<'a> {
         let cycle = self.flood.unwrap(blossom);
         let n = cycle.len();
         let ahead = (exit + n - entry) % n;
-        let forward = ahead % 2 == 0;
+        let forward = ahead.is_multiple_of(2);
         let steps = if forward { ahead } else { n - ahead };
         // The k-th member from the entry along the way, and the touch from it to the next.
         let member = |k: usize| match forward {
