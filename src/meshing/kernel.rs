@@ -246,7 +246,11 @@ impl Kernel {
             let last = (k + 3) & 3;
             let jacobian = edges[last][0] * edges[k][1] - edges[last][1] * edges[k][0];
             let scale = squares[k] * squares[last];
-            least = least.min(if scale > 0.0 { jacobian / scale.sqrt() } else { 0.0 });
+            least = least.min(if scale > 0.0 {
+                jacobian / scale.sqrt()
+            } else {
+                0.0
+            });
         }
         least
     }
