@@ -14,7 +14,6 @@ use std::f64::consts::FRAC_PI_2;
 use std::f64::consts::PI;
 
 use crate::geometry::point::Xy;
-use crate::geometry::quad::distance;
 use crate::meshing::contour::Contour;
 use crate::meshing::sheet::Mark;
 use crate::meshing::sheet::Shape;
@@ -28,8 +27,8 @@ const CORNER_MAY: f64 = 158.0 * PI / 180.0;
 const REFLEX: f64 = 232.0 * PI / 180.0;
 /// What one irregular node is worth in misfit, radians².
 const IRREGULAR: f64 = 0.25;
-/// Longest loop for which pairs are searched: the search is cubic in the counts.
-const PAIR_LONGEST: usize = 160;
+/// Longest loop for which pairs are searched.
+const PAIR_LONGEST: usize = 800;
 /// Most corners that a few-sided loop may seem to have.
 const MOST_CORNERS: usize = 8;
 /// Plans that fit worse are not tried, radians².
@@ -210,26 +209,28 @@ fn loose_spokes(counts: &[usize]) -> Option<[usize; 6]> {
 }
 
 /// The best line across any of the four corners: each spoke and the line itself should have
-/// edges as long as those of the loop. O(count³).
+/// edges as long as those of the loop. O(count² x mismatch).
 fn pair_plan(contour: &Contour, corners: &[usize], misfit: f64) -> Option<Plan> {
     if contour.len() > PAIR_LONGEST {
         return None;
     }
+    let size_m = contour.spacing_m.iter().sum::<f64>() / contour.len() as f64;
     let mut best: Option<(f64, usize, Cut)> = None;
     for turn in 0..4 {
         let mut turned = corners.to_vec();
         turned.rotate_left(turn);
         let counts = counts(contour.len(), &turned);
+        // The spokes of triangle and pentagon to the line have this many edges together.
+        let excess = (counts[0] + counts[3]).saturating_sub(counts[1] + counts[2]) / 2;
         for before in 1..counts[3] {
             for after in 1..counts[0] {
-                let shortest = before.abs_diff(after) + 2;
-                for across in (shortest..=before + after).step_by(2) {
+                for spoke in 0..excess.min(before).min(after) {
                     let cut = Cut {
                         before,
                         after,
-                        across,
+                        across: before + after - 2 * spoke,
                     };
-                    let Some(stretch) = pair_stretch(contour, &turned, &counts, cut) else {
+                    let Some(stretch) = pair_stretch(contour, &turned, &counts, cut, size_m) else {
                         continue;
                     };
                     if best.is_none_or(|(least, _, _)| stretch < least) {
@@ -249,9 +250,15 @@ fn pair_plan(contour: &Contour, corners: &[usize], misfit: f64) -> Option<Plan> 
     })
 }
 
-/// Mean squared log of wished over actual edge length along the spokes and the line, or `None` if
-/// the counts do not fit.
-fn pair_stretch(contour: &Contour, corners: &[usize], counts: &[usize], cut: Cut) -> Option<f64> {
+/// How far edges along the spokes and the line are from `size_m`, or `None` if the counts do not
+/// fit: the mean of `(r - 1/r)² / 4` over the ratios r, near 1 the squared logarithm.
+fn pair_stretch(
+    contour: &Contour,
+    corners: &[usize],
+    counts: &[usize],
+    cut: Cut,
+    size_m: f64,
+) -> Option<f64> {
     let (triangle, pentagon) = pair_counts(counts, cut);
     let (three, five) = (loose_spokes(&triangle)?, spokes(&pentagon)?);
     let n = contour.len();
@@ -259,28 +266,29 @@ fn pair_stretch(contour: &Contour, corners: &[usize], counts: &[usize], cut: Cut
     let (before, after) = (corners[0] + n - cut.before, corners[0] + cut.after);
     let (p, q) = (at(before), at(after));
     let far = [corners[1], corners[2], corners[3]].map(at);
-    let size_m = contour.spacing_m.iter().sum::<f64>() / n as f64;
     let mut sum = 0.0;
-    let mut weigh = |length: f64, count: usize| {
-        sum += (length / (count as f64 * size_m)).ln().powi(2);
+    let mut weigh = |a: Xy, b: Xy, count: usize| {
+        let wished = count as f64 * size_m;
+        let ratio2 = ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)) / (wished * wished);
+        sum += 0.25 * (ratio2 + 1.0 / ratio2 - 2.0);
     };
     let near = at(corners[0]);
     if three[1] == 0 {
         let bend = bend(near, p, q);
-        weigh(distance(q, bend), three[0]);
-        weigh(distance(bend, p), three[2]);
+        weigh(q, bend, three[0]);
+        weigh(bend, p, three[2]);
     } else {
-        weigh(distance(p, q), cut.across);
+        weigh(p, q, cut.across);
         let centre = centroid(&[near, p, q]);
         for (side, (a, b)) in [(near, q), (q, p), (p, near)].into_iter().enumerate() {
-            weigh(distance(centre, middle(a, b)), three[side]);
+            weigh(centre, middle(a, b), three[side]);
         }
     }
     let ring = [q, far[0], far[1], far[2], p];
     let centre = centroid(&ring);
     for side in 0..5 {
         let foot = middle(ring[side], ring[(side + 1) % 5]);
-        weigh(distance(centre, foot), five[side]);
+        weigh(centre, foot, five[side]);
     }
     Some(sum / 9.0)
 }
