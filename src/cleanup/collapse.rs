@@ -124,9 +124,9 @@ fn close(graph: &mut Graph, thin: &Thin, face: &Face) -> bool {
         }
     }
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
-    pairs.iter().any(|&(_, node, edge)| {
-        join(graph, node, edge, 0.25, thin.share).is_some()
-    })
+    pairs
+        .iter()
+        .any(|&(_, node, edge)| join(graph, node, edge, 0.25, thin.share).is_some())
 }
 
 /// Drops a loop that hangs on at most one junction.
