@@ -7,12 +7,12 @@ use crate::ingest::feature::Content;
 use serde_json::Value;
 use std::path::Path;
 
-/// Geographic systems (degrees) that line work comes in: WGS 84, ETRS89, NAD83 and NAD27, GDA94 and
-/// GDA2020, NZGD2000, CGCS2000, JGD2000 and JGD2011, SIRGAS 2000, NAD83(CSRS), OSGB36, Pulkovo, ED50,
-/// RGF93, Hong Kong, and the three-dimensional and CRS84 variants.
-const GEOGRAPHIC: [u32; 25] = [
-    4326, 4258, 4269, 4267, 4283, 7844, 4167, 4490, 4612, 6668, 4674, 4617, 4277, 4284, 4230, 4171,
-    4611, 4979, 4937, 4955, 4955, 4759, 4152, 4322, 4937,
+/// Geographic systems (degrees) that line work comes in: WGS 84 and 72, ETRS89, NAD83, NAD27 and
+/// NAD83(CSRS), GDA94 and GDA2020, NZGD2000, CGCS2000, JGD2000 and JGD2011, SIRGAS 2000, OSGB36,
+/// Pulkovo 1942, ED50, RGF93, Hong Kong 1980, NAD83(HARN, 2007); last the three-dimensional ones.
+const GEOGRAPHIC: [u32; 23] = [
+    4326, 4322, 4258, 4269, 4267, 4617, 4283, 7844, 4167, 4490, 4612, 6668, 4674, 4277, 4284, 4230,
+    4171, 4611, 4152, 4759, 4979, 4937, 4955,
 ];
 
 /// What a file or a user says about the reference system.

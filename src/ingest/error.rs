@@ -63,6 +63,13 @@ pub enum Error {
         /// The file.
         file: PathBuf,
     },
+    /// More kinds than a mesh can tell apart.
+    TooManyKinds {
+        /// The file.
+        file: PathBuf,
+        /// How many.
+        kinds: usize,
+    },
     /// The data do not fit the integer grid.
     TooWide {
         /// The file.
@@ -101,7 +108,8 @@ impl fmt::Display for Error {
                 reason,
             } => write!(
                 f,
-                "{}: ends in the middle, after {features} features ({reason}); fetch or write it again",
+                "{}: ends in the middle, after {features} features ({reason}); fetch or write it \
+                 again",
                 file.display()
             ),
             Error::Empty { file } => {
@@ -121,7 +129,7 @@ impl fmt::Display for Error {
             } => {
                 write!(f, "{}: feature {feature}", file.display())?;
                 if let Some([x, y]) = at {
-                    write!(f, " at ({x}, {y})")?;
+                    write!(f, " at ({}, {})", Number(*x), Number(*y))?;
                 }
                 write!(f, ": {reason}; {advice}")
             }
@@ -133,6 +141,12 @@ impl fmt::Display for Error {
             Error::NoLines { file } => write!(
                 f,
                 "{}: has neither polygons nor lines; at least a boundary polygon is needed",
+                file.display()
+            ),
+            Error::TooManyKinds { file, kinds } => write!(
+                f,
+                "{}: the property `kind` has {kinds} values, at most 65535 are possible; put what \
+                 is special to a feature into `name`",
                 file.display()
             ),
             Error::TooWide {
@@ -149,6 +163,19 @@ impl fmt::Display for Error {
                 high[0],
                 high[1]
             ),
+        }
+    }
+}
+
+/// A coordinate; one that is not a place on Earth in scientific notation.
+struct Number(f64);
+
+impl fmt::Display for Number {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.abs() < 1e12 {
+            write!(f, "{}", self.0)
+        } else {
+            write!(f, "{:e}", self.0)
         }
     }
 }

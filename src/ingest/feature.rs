@@ -268,8 +268,9 @@ fn positions(labels: &Labels, given: &[Position], content: &mut Content) -> Resu
     let mut points = Vec::with_capacity(given.len());
     for position in given {
         let &[x, y, ..] = position.as_slice() else {
-            let reason = format!("a coordinate has {} numbers", position.len());
-            return Err(labels.wrong(None, reason, "it needs two or three"));
+            let reason = format!("a coordinate has {} number(s)", position.len());
+            let before = points.last().copied();
+            return Err(labels.wrong(before, reason, "it needs two or three"));
         };
         if !(x.abs() < ABSURD_M && y.abs() < ABSURD_M) {
             let reason = "the coordinate is not a place on Earth".to_string();

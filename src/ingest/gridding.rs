@@ -43,11 +43,12 @@ pub fn place(
     let mut kinds: Vec<String> = content.parts.iter().map(|part| part.kind.clone()).collect();
     kinds.sort_unstable();
     kinds.dedup();
-    assert!(
-        kinds.len() <= usize::from(u16::MAX),
-        "{} kinds",
-        kinds.len()
-    );
+    if kinds.len() > usize::from(u16::MAX) {
+        return Err(Error::TooManyKinds {
+            file: path.to_path_buf(),
+            kinds: kinds.len(),
+        });
+    }
     let mut lines = Vec::with_capacity(content.parts.len());
     for part in content.parts {
         let kind = kinds.binary_search(&part.kind).unwrap_or_default() as u16;

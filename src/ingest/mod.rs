@@ -1,7 +1,7 @@
 //! GIS files -> (Domain, Findings).
 //!
 //! # Promises
-//! 1. Every feature ends up in the domain, in a finding or in an error; nothing is dropped in silence.
+//! 1. Every feature ends up in the domain, in a finding or in an error; nothing goes in silence.
 //! 2. Lines keep the order of the input; polygons become rings, the exterior counter-clockwise and
 //!    interiors clockwise, so that the polygon lies on the left.
 //! 3. No coordinate moves by more than half a cell; consecutive points differ, rings are closed,
@@ -11,19 +11,21 @@
 //!
 //! # Needs
 //! One GeoJSON file (RFC 7946, or the 2008 format with a `crs` member), plain or gzip: a
-//! FeatureCollection, a Feature or a geometry. Coordinates in metres. Properties: `role` of a polygon
-//! (`boundary`, `domain` or nothing: meshed; `hole`: cut out; else a constraint), `kind`, `name`.
+//! FeatureCollection, a Feature or a geometry. Coordinates in metres. Properties: `role` of a
+//! polygon (`boundary`, `domain` or nothing: meshed; `hole`: cut out; else its rings are
+//! constraints), `kind`, `name`.
 //!
 //! # Method
 //! 1. `source`: bytes, unpacked and digested as they pass.
-//! 2. `geojson`, `feature`: one feature at a time from the stream; the `crs` member may stand before
-//!    or after them.
+//! 2. `geojson`, `feature`: one feature at a time from the stream; the `crs` member may stand
+//!    before or after them.
 //! 3. `crs`: is it metres?
 //! 4. `gridding`: origin, integer points, kinds; what has no length or no area.
 //! 5. `rings`: direction, self-crossings.
 //!
 //! # Cost
-//! Linear in the file (`rings`: a sweep over each ring). Memory: 16 bytes a point beside the result.
+//! Linear in the file (`rings`: about n^1.5 for a ring of n points). Memory: 16 bytes a point beside
+//! the result.
 //!
 //! # Not here
 //! Anything that needs two lines: crossings, clipping, near misses. Reprojection.

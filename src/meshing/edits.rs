@@ -6,7 +6,11 @@ use crate::meshing::kernel::Kernel;
 use crate::meshing::kernel::after;
 use crate::meshing::kernel::before;
 use crate::meshing::kernel::quad_of;
+use crate::meshing::last_resort::best_ring;
 use crate::meshing::triangulate::NONE;
+
+/// A ring is the last operation tried: its true cost in valences (about 8) would rule it out.
+const RING_COST: f32 = 2.0;
 
 /// One possible change of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +26,9 @@ pub(crate) enum Operation {
     /// The `width` quads from `side` counter-clockwise leave the start of `side` for a new node;
     /// a new quad fills the gap.
     Split { side: u32, width: u32 },
+    /// Four new nodes inside a quad, and five quads in its place: mends what nothing else does, at
+    /// the price of four irregular nodes.
+    Ring { quad: u32 },
     /// A quad whose corner after the start of `side` is flat on the outline and has no inner edge,
     /// with its two neighbours off the outline: three quads become six.
     Fill { side: u32 },
@@ -81,6 +88,9 @@ pub(crate) fn candidates(
         if fills && kernel.held[flat] && kernel.valence[flat] == 1 && kernel.ideal[flat] > 1.5 {
             found.push((1.0, Operation::Fill { side }));
         }
+    }
+    if fills {
+        found.push((RING_COST, Operation::Ring { quad }));
     }
     found.retain(|&(delta, _)| delta < limit);
     // Equal deltas stay in the order found, which depends on slots alone.
@@ -160,6 +170,7 @@ pub(crate) fn edit(kernel: &Kernel, operation: Operation) -> Option<Edit> {
         Operation::Collapse { side } => Some(collapse_edit(kernel, side)),
         Operation::Split { side, width } => Some(split_edit(kernel, side, width)),
         Operation::Fill { side } => fill_edit(kernel, side),
+        Operation::Ring { quad } => Some(ring_edit(kernel, quad)),
     }
 }
 
@@ -273,6 +284,28 @@ fn fill_edit(kernel: &Kernel, side: u32) -> Option<Edit> {
             .collect(),
         moved: None,
     })
+}
+
+fn ring_edit(kernel: &Kernel, quad: u32) -> Edit {
+    let outer = kernel.quads[quad as usize];
+    let first = kernel.nodes.len() as u32;
+    let side = |i: u32| {
+        let next = (i + 1) % 4;
+        [
+            outer[i as usize],
+            outer[next as usize],
+            first + next,
+            first + i,
+        ]
+    };
+    let mut new: Few<[u32; 4]> = (0..4).map(side).collect();
+    new.push(std::array::from_fn(|i| first + i as u32));
+    Edit {
+        old: [quad].into_iter().collect(),
+        new,
+        born: best_ring(&kernel.corners(quad)).into_iter().collect(),
+        moved: None,
+    }
 }
 
 fn middle(kernel: &Kernel, p: u32, q: u32) -> Xy {

@@ -72,11 +72,10 @@ impl Cleaner {
         }
     }
 
-    /// Forgets failures of rescue and energy passes: smoothing in between may have opened a way.
+    /// Forgets failed rescues: smoothing in between may have opened a way.
     pub fn forget(&mut self) {
         for failed in &mut self.failed {
             failed[1] = 0;
-            failed[2] = 0;
         }
     }
 
@@ -234,6 +233,9 @@ impl Cleaner {
             };
             if content {
                 return true;
+            }
+            if pass == Pass::Energy && now.energy > 1.5 * before.energy {
+                return false;
             }
         }
         false

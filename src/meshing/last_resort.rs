@@ -54,8 +54,9 @@ fn ring(draft: &mut Draft, quad: [u32; 4], inner: [Xy; 4]) {
     draft.quads.push([first, first + 1, first + 2, first + 3]);
 }
 
-/// The inner quad of the best ring among 5 x 5 choices of k and r.
-fn best_ring(corners: &[Xy; 4]) -> [Xy; 4] {
+/// The inner quad of the best ring among 5 x 5 choices of k and r, with k on the diagonal from
+/// corner 1 to corner 3.
+pub(crate) fn best_ring(corners: &[Xy; 4]) -> [Xy; 4] {
     let mut best = (f64::NEG_INFINITY, *corners);
     for along in [0.5, 0.35, 0.65, 0.2, 0.8] {
         let k: Xy =

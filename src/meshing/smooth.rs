@@ -122,13 +122,13 @@ fn relax(kernel: &mut Kernel, node: u32, phase: Phase) -> f64 {
     let local = star.expand(at, phase);
     let step = local.newton_step();
     let length = 1.0 / star.scale.sqrt();
-    let long = (step[0].hypot(step[1]) / (0.7 * length)).max(1.0);
-    let mut factor = 1.0 / long;
+    let reach = (step[0] * step[0] + step[1] * step[1]).sqrt();
+    let mut factor = (0.7 * length / reach).min(1.0);
     for _ in 0..6 {
         let to = [at[0] + factor * step[0], at[1] + factor * step[1]];
         if star.energy(to, phase) < local.value {
             kernel.nodes[node as usize] = to;
-            return factor * step[0].hypot(step[1]) / length;
+            return factor * reach / length;
         }
         factor *= 0.4;
     }
@@ -245,6 +245,7 @@ struct Corner {
 }
 
 impl Corner {
+    #[inline(always)]
     fn of(e1: Xy, e2: Xy, scale: f64, phase: Phase) -> Corner {
         let d = scale * (e1[0] * e2[1] - e1[1] * e2[0]);
         let squares = e1[0] * e1[0] + e1[1] * e1[1] + e2[0] * e2[0] + e2[1] * e2[1];
@@ -264,11 +265,13 @@ impl Corner {
         }
     }
 
+    #[inline(always)]
     fn value(&self, phase: Phase) -> f64 {
         let f = self.n / self.chi;
         if phase.squared { f * f } else { f }
     }
 
+    #[inline(always)]
     /// Adds value and derivatives with respect to one node of the corner: n changes by
     /// scale * `pull` + SIZE d (gradient of d), curves by `curve`; d changes by scale * `turn`.
     fn expand(
@@ -289,7 +292,8 @@ impl Corner {
         let f = self.n * inverse;
         // chi' / chi and chi'' / chi
         let slope = 1.0 / self.root;
-        let bend = 0.5 * (phase.epsilon * slope).powi(2) * slope * inverse;
+        let narrow = phase.epsilon * slope;
+        let bend = 0.5 * narrow * narrow * slope * inverse;
         let df = [
             inverse * dn[0] - f * slope * g[0],
             inverse * dn[1] - f * slope * g[1],
@@ -327,7 +331,7 @@ impl Expansion {
     fn newton_step(&self) -> Xy {
         let [a, b, c] = self.hessian;
         let middle = 0.5 * (a + c);
-        let radius = (0.5 * (a - c)).hypot(b);
+        let radius = (0.25 * (a - c) * (a - c) + b * b).sqrt();
         let lift = (0.01 * (middle.abs() + radius) - (middle - radius)).max(0.0);
         let (a, c) = (a + lift, c + lift);
         let determinant = a * c - b * b;

@@ -6,9 +6,9 @@ use std::cmp::Ordering;
 
 /// A stretch of an input line that an edge represents.
 ///
-/// Positions are [stations](crate::domain::line::Domain::stations_m), metres along the line as read. The edge's
-/// first node represents `from_m`, its second `to_m`; so `from_m > to_m` where the line was
-/// digitised against the edge.
+/// Positions are [stations](crate::domain::line::Domain::stations_m), metres along the line as read.
+/// The edge's first node represents `from_m`, its second `to_m`; so `from_m > to_m` where the line
+/// was digitised against the edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
     /// The line.

@@ -1,13 +1,13 @@
-//! Lines -> the planar arrangement: nodes, edges between them, and the pieces of lines on each edge.
+//! Lines -> the planar arrangement: nodes, edges between them, pieces of lines on each edge.
 //!
 //! # Promises
-//! 1. Edges meet only at nodes, exactly ([`check`]).
+//! 1. Edges meet only at nodes, exactly ([`check`](crate::noding::check::check)).
 //! 2. No position of a line moves by more than 0.71 cells (half the diagonal of a pixel).
 //! 3. Each line is covered from its first point to its last by pieces that join end to end.
 //! 4. The arrangement is the same, bit by bit, for any size and order of tiles and any order of
 //!    the two segments of a crossing; what is equal or overlaps is one edge with several pieces.
-//! 5. After [`clip()`] no edge lies outside the domain; every edge of the rim carries ring pieces
-//!    that say where the domain is ([`rim`]), no other edge carries one; every stretch of a
+//! 5. After [`clip`](fn@crate::noding::clip) no edge lies outside the domain; every edge of the rim carries ring pieces
+//!    that say where the domain is ([`rim`](crate::noding::rim)), no other edge carries one; every stretch of a
 //!    constraint line that was cut away is in the list.
 //!
 //! # Needs

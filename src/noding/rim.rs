@@ -20,7 +20,7 @@ pub fn vote(domain: &Domain, piece: &Piece) -> i32 {
 
 /// +1 if the domain lies on the left of an edge with these pieces, -1 if on the right, 0 if the
 /// edge is not on the rim (both sides are inside). For arrangements that
-/// [`clip()`](crate::noding::clip()) has seen: there all ring pieces of an edge agree.
+/// [`clip`](fn@crate::noding::clip) has seen: there all ring pieces of an edge agree.
 pub fn rim_side(domain: &Domain, pieces: &[Piece]) -> i32 {
     pieces
         .iter()

@@ -12,8 +12,8 @@ use crate::noding::tile::Segment;
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Stop {
     segment: Segment,
-    /// As in [`along`], cells². Different pixels that one segment passes never tie: on the way both
-    /// coordinates change in one direction only.
+    /// As in [`along`], cells². Different pixels that one segment passes never tie: on the way
+    /// both coordinates change in one direction only.
     along: i64,
     node: u32,
 }

@@ -14,53 +14,83 @@ type Winding = [i32; 2];
 /// polygon and in no hole polygon.
 ///
 /// A line sweeps north. Its status holds the edges of rings that it meets, west to east, each with
-/// the winding numbers of its east side; the middle of any other edge finds those of the face it
-/// runs through at its neighbour in the west. Exact: edges do not cross, so their order never
-/// changes while they are in the status, and all comparisons are in doubled grid coordinates.
+/// the winding numbers of its east side; the middle of an edge finds those of the face beside it
+/// at its neighbour in the west. Exact: edges do not cross, so their order never changes while
+/// they are in the status, and all comparisons are in doubled grid coordinates.
 /// O((edges + ring edges) log(ring edges)).
 pub fn sides_inside(domain: &Domain, arrangement: &Arrangement) -> Vec<[bool; 2]> {
-    let count = arrangement.edges.len();
-    let net: Vec<Winding> = (0..count as u32)
-        .map(|edge| net_winding(domain, arrangement.pieces_of(edge)))
+    let edges: Vec<(Span, Winding)> = (arrangement.edges.iter().zip(0..))
+        .map(|(ends, edge)| {
+            let span = Span::between(ends.map(|node| doubled(arrangement, node)));
+            (span, net_winding(domain, arrangement.pieces_of(edge)))
+        })
         .collect();
-    let spans: Vec<Span> = (arrangement.edges.iter())
-        .map(|&edge| Span::between(edge.map(|node| doubled(arrangement, node))))
-        .collect();
-    let mut starts: Vec<usize> = (0..count)
-        .filter(|&edge| net[edge] != [0, 0] && !spans[edge].is_level())
-        .collect();
-    let mut ends = starts.clone();
-    starts.sort_unstable_by(|&s, &t| spans[s].start_order(&spans[t]));
-    ends.sort_unstable_by_key(|&edge| spans[edge].high.y);
-    let mut middles: Vec<usize> = (0..count).collect();
-    middles.sort_unstable_by_key(|&edge| spans[edge].middle().y);
-
-    let mut status: BTreeMap<Span, Winding> = BTreeMap::new();
-    let (mut started, mut ended) = (0, 0);
-    let mut inside = vec![[false; 2]; count];
-    for edge in middles {
-        let middle = spans[edge].middle();
-        while let Some(&start) = starts.get(started)
-            && spans[start].low.y <= middle.y
-        {
-            while spans[ends[ended]].high.y <= spans[start].low.y {
-                status.remove(&spans[ends[ended]]);
-                ended += 1;
-            }
-            let west = west_of(&status, &spans[start]);
-            let rise = if spans[start].rises { -1 } else { 1 };
-            status.insert(spans[start], plus(west, rise, net[start]));
-            started += 1;
-        }
-        while let Some(&end) = ends.get(ended)
-            && spans[end].high.y <= middle.y
-        {
-            status.remove(&spans[end]);
-            ended += 1;
-        }
-        inside[edge] = sides(west_of(&status, &Span::at(middle)), spans[edge], net[edge]);
+    let mut by_middle: Vec<usize> = (0..edges.len()).collect();
+    by_middle.sort_unstable_by_key(|&edge| edges[edge].0.middle().y);
+    let mut sweep = Sweep::over(&edges);
+    let mut inside = vec![[false; 2]; edges.len()];
+    for edge in by_middle {
+        let (span, net) = edges[edge];
+        sweep.advance(span.middle().y);
+        inside[edge] = sides(sweep.west_of(&Span::at(span.middle())), span, net);
     }
     inside
+}
+
+/// The sweep line: edges of rings that are not level, by where they start and end.
+struct Sweep {
+    starts: Vec<(Span, Winding)>,
+    ends: Vec<Span>,
+    started: usize,
+    ended: usize,
+    /// Edges that the line meets (just north of itself), each with the winding of its east side.
+    status: BTreeMap<Span, Winding>,
+}
+
+impl Sweep {
+    fn over(edges: &[(Span, Winding)]) -> Sweep {
+        let mut starts = edges.to_vec();
+        starts.retain(|(span, net)| *net != [0, 0] && !span.is_level());
+        starts.sort_unstable_by(|(s, _), (t, _)| s.start_order(t));
+        let mut ends: Vec<Span> = starts.iter().map(|(span, _)| *span).collect();
+        ends.sort_unstable_by_key(|span| span.high.y);
+        Sweep {
+            starts,
+            ends,
+            started: 0,
+            ended: 0,
+            status: BTreeMap::new(),
+        }
+    }
+
+    /// Moves the line to just north of `y`.
+    fn advance(&mut self, y: i64) {
+        while let Some(&(start, net)) = self.starts.get(self.started)
+            && start.low.y <= y
+        {
+            self.drop_until(start.low.y);
+            let west = self.west_of(&start);
+            let east = plus(west, if start.rises { -1 } else { 1 }, net);
+            self.status.insert(start, east);
+            self.started += 1;
+        }
+        self.drop_until(y);
+    }
+
+    /// Drops edges that end at `y` or before: what ends at a level goes before what starts there.
+    fn drop_until(&mut self, y: i64) {
+        while let Some(end) = self.ends.get(self.ended)
+            && end.high.y <= y
+        {
+            self.status.remove(end);
+            self.ended += 1;
+        }
+    }
+
+    /// The winding between `span` and the ring edge in its west; the far west is outside.
+    fn west_of(&self, span: &Span) -> Winding {
+        (self.status.range(..=*span).next_back()).map_or([0, 0], |(_, east)| *east)
+    }
 }
 
 /// From the winding just east of an edge (just north of a level one) to both its sides.
@@ -89,11 +119,6 @@ fn net_winding(domain: &Domain, pieces: &[Piece]) -> Winding {
 
 fn plus(winding: Winding, sign: i32, net: Winding) -> Winding {
     [winding[0] + sign * net[0], winding[1] + sign * net[1]]
-}
-
-/// The winding between `span` and the ring edge in its west; the far west is outside.
-fn west_of(status: &BTreeMap<Span, Winding>, span: &Span) -> Winding {
-    (status.range(..=*span).next_back()).map_or([0, 0], |(_, east)| *east)
 }
 
 /// A position in half cells.
@@ -142,8 +167,8 @@ impl Span {
         }
     }
 
-    /// Where `place` lies from the span: `Less` is west of it. Half the direction (below 2^30) times
-    /// a difference in half cells (below 2^31): exact in i64.
+    /// Where `place` lies from the span: `Less` is west of it. Half the direction (up to 2^30)
+    /// times a difference in half cells (up to 2^31): exact in i64.
     fn side(&self, place: Half) -> Ordering {
         let (dx, dy) = (
             (self.high.x - self.low.x) / 2,

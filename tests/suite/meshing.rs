@@ -10,7 +10,10 @@ use polder::meshing::patch::Loops;
 use polder::meshing::patch::Method;
 
 fn options(methods: &[Method]) -> Options {
-    Options { methods: methods.to_vec(), good_enough: 0.95 }
+    Options {
+        methods: methods.to_vec(),
+        good_enough: 0.95,
+    }
 }
 
 /// Meshes and checks every promise.
@@ -33,8 +36,12 @@ fn named_shapes_keep_all_promises() {
 
 #[test]
 fn random_shapes_keep_all_promises() {
-    for seed in 0..300 {
-        verify(&format!("random {seed}"), &cases::random(seed), &[Method::Indirect]);
+    for seed in 0..200 {
+        verify(
+            &format!("random {seed}"),
+            &cases::cruel(seed),
+            &[Method::Indirect],
+        );
     }
 }
 
@@ -43,7 +50,7 @@ fn last_resort_alone_serves_everything() {
     for (name, loops) in cases::named() {
         verify(name, &loops, &[]);
     }
-    for seed in 0..300 {
-        verify(&format!("random {seed}"), &cases::random(seed), &[]);
+    for seed in 0..200 {
+        verify(&format!("random {seed}"), &cases::cruel(seed), &[]);
     }
 }

@@ -165,6 +165,42 @@ fn assert_covered(domain: &Domain, arrangement: &Arrangement) {
     assert!(rest.is_empty());
 }
 
+/// Each node is within half a pixel's diagonal of each position of a line that it stands for.
+fn assert_near(domain: &Domain, arrangement: &Arrangement) {
+    for (edge, ends) in arrangement.edges.iter().enumerate() {
+        for piece in arrangement.pieces_of(edge as u32) {
+            for (node, at_m) in [(ends[0], piece.from_m), (ends[1], piece.to_m)] {
+                let (x, y) = position(domain, piece.line, at_m);
+                let p = arrangement.points[node as usize];
+                let moved = (f64::from(p.x) - x).hypot(f64::from(p.y) - y);
+                assert!(
+                    moved < 0.5_f64.sqrt() + 1e-6,
+                    "line {} moved {moved}",
+                    piece.line
+                );
+            }
+        }
+    }
+}
+
+/// The position of a line at a station, cells.
+fn position(domain: &Domain, line: u32, at_m: f64) -> (f64, f64) {
+    let stations = domain.stations_m(line);
+    let at = stations
+        .partition_point(|&s| s <= at_m)
+        .clamp(1, stations.len() - 1)
+        - 1;
+    let share = (at_m - stations[at]) / (stations[at + 1] - stations[at]);
+    let (a, b) = (
+        domain.lines[line as usize].points[at],
+        domain.lines[line as usize].points[at + 1],
+    );
+    (
+        f64::from(a.x) + share * f64::from(b.x - a.x),
+        f64::from(a.y) + share * f64::from(b.y - a.y),
+    )
+}
+
 fn assert_noded(domain: &Domain, tile_cells: &[i32]) -> Arrangement {
     let one = node(
         domain,
@@ -174,6 +210,7 @@ fn assert_noded(domain: &Domain, tile_cells: &[i32]) -> Arrangement {
     );
     check(&one).unwrap();
     assert_covered(domain, &one);
+    assert_near(domain, &one);
     for &tile_cells in tile_cells {
         assert_eq!(
             one,
@@ -440,7 +477,8 @@ fn assert_real_case(name: &str, tile_cells: &[i32]) {
     let (clipped, outside) = clip(&domain, made);
     let clipping = start.elapsed().as_secs_f64();
     println!(
-        "{name}: area {} m², noding {noded:.2} s, clip {clipping:.2} s, {} nodes, {} edges, {} pieces, {} outside",
+        "{name}: area {} m², noding {noded:.2} s, clip {clipping:.2} s; {} nodes, {} edges, \
+         {} pieces, {} outside",
         rim_area_m2(&domain, &clipped),
         clipped.points.len(),
         clipped.edges.len(),
