@@ -37,7 +37,14 @@
 //! Where boundary nodes lie is decided in `boundary`, how many in `parity`. Cutting a large
 //! sub-domain into parts is done in `seams`.
 
+mod bridges;
 pub mod check;
+mod clearance;
+mod closures;
+mod contour;
+mod core;
+mod core_quads;
+mod corridor;
 mod draft;
 mod edits;
 mod finish;
@@ -45,11 +52,22 @@ mod improve;
 mod join;
 mod kernel;
 mod last_resort;
+mod lattice;
+mod looping;
+mod mapping;
 mod pairing;
 pub mod patch;
+mod patterns;
+mod rows;
 mod scatter;
 pub mod score;
+mod sheet;
 mod smooth;
+mod splitting;
+mod strip;
+mod strip_border;
+#[cfg(test)]
+mod strip_tests;
 mod triangulate;
 mod visits;
 
@@ -131,7 +149,9 @@ pub fn mesh(loops: &Loops, options: &Options) -> Result<Meshed, Defect> {
 
 fn draft(method: Method, visits: &Visits, loops: &Loops) -> Option<Draft> {
     match method {
-        Method::Mapping | Method::Looping | Method::Strip => None,
+        Method::Mapping => mapping::mesh(visits, loops),
+        Method::Looping => looping::mesh(visits, loops.size_m),
+        Method::Strip => strip::mesh(visits, loops),
         Method::Indirect => {
             let inner = scatter::scatter(visits, loops.size_m);
             let triangles = triangulate(visits, &inner)?;
