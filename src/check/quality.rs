@@ -139,6 +139,8 @@ pub struct Quality {
     /// Length of each edge over the size wished in its sub-domain; bins of 0.005. An edge between
     /// two sub-domains counts half with each.
     pub edge_over_size: Histogram,
+    /// The same for edges between two nodes inside patches alone: open ground, no line near.
+    pub edge_open_over_size: Histogram,
     /// Hydraulic size (4 area / perimeter) of each cell over the size wished; bins of 0.001.
     pub hydraulic_over_size: Histogram,
     /// Hydraulic size of each cell, metres, least only (bins are relative to the default size).
@@ -204,6 +206,7 @@ impl<'a> Measuring<'a> {
                 scaled_jacobian: Histogram::new(-1.0, 1.0, 2000),
                 angle_deg: Histogram::new(0.0, 360.0, 720),
                 edge_over_size: Histogram::new(0.0, 4.0, 800),
+                edge_open_over_size: Histogram::new(0.0, 4.0, 800),
                 hydraulic_over_size: Histogram::new(0.0, 2.0, 2000),
                 hydraulic_min_m: f64::INFINITY,
                 area_m2: 0.0,
@@ -234,6 +237,16 @@ impl<'a> Measuring<'a> {
                 *around = around.saturating_add(1);
             }
             let shape = self.measure(&corners, size_m);
+            for k in 0..4 {
+                let ends = [quad[k], quad[(k + 1) % 4]];
+                if ends
+                    .iter()
+                    .all(|&node| node as usize >= patch.boundary.len())
+                {
+                    let length = distance(corners[k], corners[(k + 1) % 4]);
+                    self.quality.edge_open_over_size.add(length / size_m);
+                }
+            }
             share.area_m2 += area(&corners);
             share.scaled_jacobian_sum += shape[0];
             share.scaled_jacobian_min = share.scaled_jacobian_min.min(shape[0]);
