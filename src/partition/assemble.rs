@@ -138,8 +138,11 @@ fn faces(
         })
         .collect();
     inner.sort_unstable();
-    let nodes: Vec<u32> = inner.iter().map(|&(node, _)| node).collect();
-    let below = halves_below(arrangement, &nodes);
+    let starts: Vec<Point> = inner
+        .iter()
+        .map(|&(node, _)| arrangement.points[node as usize])
+        .collect();
+    let below = halves_below(arrangement, &starts);
     let mut face: Vec<u32> = (0..walks.len() as u32).collect();
     for (&(node, w), below) in inner.iter().zip(below) {
         let seen = below.map_or(u32::MAX, |half| walk_of[half as usize]);

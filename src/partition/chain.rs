@@ -93,6 +93,10 @@ fn is_junction(
         return true;
     };
     let pieces = |half: HalfEdge| arrangement.pieces_of(half >> 1);
+    if pieces(g).is_empty() && pieces(h).is_empty() {
+        // A seam follows the lattice from node to node: each stretch has a count of its own.
+        return true;
+    }
     let lines = |half: HalfEdge| pieces(half).iter().map(|piece| piece.line);
     let is_rim = |half: HalfEdge| rim_side(domain, pieces(half)) != 0;
     // Pieces are sorted by line, and one line may run along an edge more than once.
