@@ -1,3 +1,88 @@
 //! Partition + SizeWish -> Goals: wished real counts, bounds and costs, a curve each.
+//!
+//! # Promises
+//! 1. `1 <= lower <= upper` on every curve, and `lower` is at least the number of its edges: each
+//!    node of the arrangement is a mesh node, so each edge carries at least one interval.
+//! 2. `lower == upper` only where every edge of the curve is a seam on the lattice: parity can
+//!    change any other curve by one, up or down from some count within its bounds.
+//! 3. Every sub-domain's lower bounds sum to at least 4, a free line counted twice; a sub-domain
+//!    with one walk of two or three corners has at least 2 on each side, so that no corner's
+//!    element is flat (where a side is a part of one curve: on the curve as a whole).
+//! 4. Goals and bounds depend on a curve, its two sub-domains and the sizes, on nothing else.
+//!
+//! # Needs
+//! A cleaned arrangement and its partition (`partition::check`); positive sizes.
+//!
+//! # Method
+//! 1. `wish`: an edge's goal is its length over its size, the smallest among the kinds of its
+//!    pieces (the default along seams). A straight seam between lattice nodes is fixed.
+//! 2. `minima`: the least counts that a shape needs, folded into the bounds of its longest curves,
+//!    so that parity stays a minimum-weight T-join and needs no rows of another kind. A fold is
+//!    sufficient, not necessary: it may forbid a split that another share of the side would allow.
+//! 3. Costs are those of [`Goals::cost`]: convex, relative, zero at the goal.
+//!
+//! # Cost
+//! O(edges + half-curves), 24 bytes a curve.
+//!
+//! # Not here
+//! Which counts are chosen (`parity`); where the nodes lie (`boundary`).
 
+use crate::domain::line::Domain;
+use crate::domain::size::SizeWish;
+use crate::intervals::goals::Goals;
+use crate::intervals::wish::EdgeWish;
+use crate::noding::arrangement::Arrangement;
+use crate::partition::subdomains::Partition;
+
+pub mod check;
 pub mod goals;
+mod minima;
+pub mod wish;
+
+/// How goals and bounds are made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// A walk turns at a corner if its direction changes by more than this, degrees.
+    pub corner_deg: f64,
+    /// Largest count over goal, above 1; three more are always allowed, so that short curves are
+    /// free to change parity.
+    pub upper_ratio: f64,
+}
+
+/// The goals of all curves.
+pub fn plan(
+    domain: &Domain,
+    sizes: &SizeWish,
+    arrangement: &Arrangement,
+    partition: &Partition,
+    options: &Options,
+) -> Goals {
+    let mut goals = Goals::default();
+    for curve in &partition.curves {
+        let edges: Vec<EdgeWish> = (curve.edges.iter())
+            .map(|&edge| wish::edge_wish(domain, sizes, arrangement, edge))
+            .collect();
+        push_curve(&mut goals, &edges, options);
+    }
+    minima::raise(&mut goals, arrangement, partition, options);
+    goals
+}
+
+fn push_curve(goals: &mut Goals, edges: &[EdgeWish], options: &Options) {
+    let lower: u32 = edges.iter().map(|edge| edge.lower).sum();
+    let fixed: u32 = edges.iter().filter_map(EdgeWish::fixed).sum();
+    let all_fixed = edges.iter().all(|edge| edge.fixed().is_some());
+    let free_goal: f64 = (edges.iter())
+        .filter(|edge| edge.fixed().is_none())
+        .map(|edge| edge.goal)
+        .sum();
+    let wide = fixed + (options.upper_ratio * free_goal).ceil() as u32 + 3;
+    goals.goal.push(f64::from(fixed) + free_goal);
+    goals.lower.push(lower);
+    (goals.upper).push(if all_fixed {
+        lower
+    } else {
+        wide.max(lower + 3)
+    });
+    goals.weight.push(1.0);
+}

@@ -1,5 +1,192 @@
 //! One sub-domain with its boundary nodes -> Patch: an all-quad mesh that keeps those nodes.
+//!
+//! # Promises
+//!
+//! 1. Every quad is counter-clockwise and has four positive corner Jacobians, computed in f64 from
+//!    the very coordinates that are stored.
+//! 2. The boundary nodes stay where they are, and no other node lies on a walk: neighbours fit
+//!    without knowing each other.
+//! 3. Edges used once are exactly the walk edges; both sides of a free line are meshed.
+//! 4. The same loops give the same bits.
+//!
+//! # Needs
+//!
+//! What [`Loops`] says, promised by `boundary`: planar walks, an even number of edges in total (by
+//! `parity`), no two boundary nodes at one place.
+//!
+//! # Method
+//!
+//! Candidates compete. `visits` makes slits ordinary boundaries; then, in the order of likely
+//! quality, each method makes a draft, `finish` cleans it up, smooths it and checks the promises,
+//! and `score` ranks it; an excellent patch ends the competition early.
+//!
+//! - `scatter`, `triangulate`, `pairing`: lattice points, constrained Delaunay (spade), near-
+//!   minimum-weight pairs.
+//! - `last_resort`: any [`join`] of any triangulation with rings; its page says why it cannot fail.
+//! - `kernel`, `edits`, `improve`, `smooth`: the finish, on the part of a draft that is not
+//!   settled. Operations after Kinney (1997) and Canann, Muthukrishnan, Phillips (1998), each with
+//!   undo; smoothing after Garanzha and others (2021).
+//!
+//! # Cost
+//!
+//! About linear in the number of quads; per quad that is not settled see `finish`. Memory about
+//! 200 bytes a quad of this sub-domain.
+//!
+//! # Not here
+//!
+//! Where boundary nodes lie is decided in `boundary`, how many in `parity`. Cutting a large
+//! sub-domain into parts is done in `seams`.
 
+mod bridges;
+pub mod check;
+mod clearance;
+mod closures;
+mod contour;
+mod core;
+mod core_quads;
+mod corridor;
 mod draft;
+mod edits;
+mod finish;
+mod improve;
+mod join;
+mod kernel;
+mod last_resort;
+mod lattice;
+mod looping;
+mod mapping;
+mod pairing;
 pub mod patch;
+mod patterns;
+mod rows;
+mod scatter;
+pub mod score;
+mod sheet;
+mod smooth;
+mod splitting;
+mod strip;
+mod strip_border;
+#[cfg(test)]
+mod strip_tests;
+mod triangulate;
 mod visits;
+
+use crate::geometry::point::Xy;
+use crate::meshing::check::Defect;
+use crate::meshing::draft::Draft;
+use crate::meshing::finish::Effort;
+use crate::meshing::finish::finish;
+use crate::meshing::join::Join;
+use crate::meshing::patch::Loops;
+use crate::meshing::patch::Method;
+use crate::meshing::patch::Patch;
+use crate::meshing::score::Score;
+use crate::meshing::triangulate::triangulate;
+use crate::meshing::visits::Visits;
+
+/// What may be tried.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// The methods that compete, in order. The last resort need not be named: it comes last anyway.
+    pub methods: Vec<Method>,
+    /// A patch ends the competition if its [`Score::rank`] reaches this; 2 tries all methods.
+    pub good_enough: f64,
+}
+
+/// The mesh of one sub-domain and how good it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Meshed {
+    /// The best patch.
+    pub patch: Patch,
+    /// Its score.
+    pub score: Score,
+    /// Centre of its worst quad, metres.
+    pub worst_at_m: Xy,
+}
+
+/// Meshes one sub-domain. An error means that the walks break the needs of this page (they cross,
+/// touch where they should not, or have an odd number of edges).
+pub fn mesh(loops: &Loops, options: &Options) -> Result<Meshed, Defect> {
+    let visits = Visits::of(loops);
+    let mut best: Option<(Patch, Score)> = None;
+    for &method in &options.methods {
+        let Some(patch) = draft(method, &visits, loops)
+            .and_then(|draft| finish(draft, &visits, loops, Effort::Clean))
+        else {
+            continue;
+        };
+        let score = Score::of(&patch, loops.nodes.len(), loops.size_m);
+        if best
+            .as_ref()
+            .is_none_or(|best| score.rank() > best.1.rank())
+        {
+            best = Some((patch, score));
+        }
+        if best
+            .as_ref()
+            .is_some_and(|best| best.1.rank() >= options.good_enough)
+        {
+            break;
+        }
+    }
+    let (patch, score) = match best {
+        Some(best) => best,
+        None => {
+            let patch = last_resort(&visits, loops)?;
+            let score = Score::of(&patch, loops.nodes.len(), loops.size_m);
+            (patch, score)
+        }
+    };
+    let corners = patch.quads[score.worst_quad as usize].map(|node| patch.nodes[node as usize]);
+    let centre = |x: usize| corners.iter().map(|corner| corner[x]).sum::<f64>() / 4.0;
+    Ok(Meshed {
+        worst_at_m: [centre(0), centre(1)],
+        patch,
+        score,
+    })
+}
+
+fn draft(method: Method, visits: &Visits, loops: &Loops) -> Option<Draft> {
+    match method {
+        Method::Mapping => mapping::mesh(visits, loops),
+        Method::Looping => looping::mesh(visits, loops.size_m),
+        Method::Strip => strip::mesh(visits, loops),
+        Method::Indirect => {
+            let inner = scatter::scatter(visits, loops.size_m);
+            let triangles = triangulate(visits, &inner)?;
+            Some(pairing::pair(&triangles, visits.len()))
+        }
+        Method::LastResort => {
+            let inner = scatter::scatter(visits, loops.size_m);
+            let triangles = triangulate(visits, &inner)?;
+            Some(last_resort::mesh(&pairing::join(&triangles, visits.len())))
+        }
+    }
+}
+
+/// Plainer and plainer versions of the method that cannot fail: what each can still lose to
+/// rounding (improvement, interior points, the choice of pairs), the next one does without.
+fn last_resort(visits: &Visits, loops: &Loops) -> Result<Patch, Defect> {
+    let scattered = scatter::scatter(visits, loops.size_m);
+    for (inner, effort) in [
+        (&scattered[..], Effort::Clean),
+        (&scattered[..], Effort::Check),
+        (&[], Effort::Clean),
+        (&[], Effort::Check),
+    ] {
+        let Some(triangles) = triangulate(visits, inner) else {
+            break;
+        };
+        let draft = last_resort::mesh(&pairing::join(&triangles, visits.len()));
+        if let Some(patch) = finish(draft, visits, loops, effort) {
+            return Ok(patch);
+        }
+    }
+    let along_tree = triangulate(visits, &[])
+        .map(|triangles| last_resort::mesh(&Join::along_tree(&triangles)))
+        .and_then(|draft| finish(draft, visits, loops, Effort::Check));
+    along_tree.ok_or_else(|| Defect {
+        what: "the walks are not planar, or too thin for f64".into(),
+        at_m: loops.nodes.first().copied().unwrap_or([0.0; 2]),
+    })
+}

@@ -2,12 +2,13 @@
 
 use crate::domain::line::LineId;
 use crate::geometry::point::Point;
+use std::cmp::Ordering;
 
 /// A stretch of an input line that an edge represents.
 ///
-/// Positions are [stations](crate::domain::line::Domain::stations_m), metres along the line as read. The edge's
-/// first node represents `from_m`, its second `to_m`; so `from_m > to_m` where the line was
-/// digitised against the edge.
+/// Positions are [stations](crate::domain::line::Domain::stations_m), metres along the line as read.
+/// The edge's first node represents `from_m`, its second `to_m`; so `from_m > to_m` where the line
+/// was digitised against the edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
     /// The line.
@@ -16,6 +17,15 @@ pub struct Piece {
     pub from_m: f64,
     /// Station at the edge's second node, metres.
     pub to_m: f64,
+}
+
+impl Piece {
+    /// The order of pieces on an edge: by line, from, to.
+    pub fn order(&self, other: &Piece) -> Ordering {
+        (self.line.cmp(&other.line))
+            .then(self.from_m.total_cmp(&other.from_m))
+            .then(self.to_m.total_cmp(&other.to_m))
+    }
 }
 
 /// A planar straight-line graph whose edges remember where they come from.
@@ -48,55 +58,57 @@ impl Arrangement {
     /// second index; pieces are given in that direction and turned where the edge is turned.
     /// O(n log n).
     pub fn from_parts(points: &[Point], edges: Vec<([u32; 2], Vec<Piece>)>) -> Arrangement {
-        let mut order: Vec<Point> = Vec::with_capacity(points.len());
-        for ([a, b], _) in &edges {
-            order.push(points[*a as usize]);
-            order.push(points[*b as usize]);
+        let mut stretches = Vec::with_capacity(edges.len());
+        for (edge, pieces) in edges {
+            if pieces.is_empty() {
+                stretches.push((edge, None));
+            }
+            stretches.extend(pieces.into_iter().map(|piece| (edge, Some(piece))));
         }
-        order.sort_unstable();
-        order.dedup();
-        let id = |old: u32| order.binary_search(&points[old as usize]).unwrap() as u32;
-        let mut turned: Vec<([u32; 2], Vec<Piece>)> = edges
-            .into_iter()
-            .filter_map(|([a, b], mut pieces)| {
-                let (a, b) = (id(a), id(b));
-                if a > b {
-                    for piece in &mut pieces {
-                        std::mem::swap(&mut piece.from_m, &mut piece.to_m);
-                    }
+        Arrangement::from_stretches(points, stretches)
+    }
+
+    /// The same from one entry for each edge and piece, in any order; `None` makes the edge without
+    /// giving it a piece.
+    pub fn from_stretches(
+        points: &[Point],
+        mut stretches: Vec<([u32; 2], Option<Piece>)>,
+    ) -> Arrangement {
+        let (points, id) = sorted_points(points);
+        for (edge, piece) in &mut stretches {
+            *edge = edge.map(|node| id[node as usize]);
+            if edge[0] > edge[1] {
+                edge.swap(0, 1);
+                if let Some(piece) = piece {
+                    std::mem::swap(&mut piece.from_m, &mut piece.to_m);
                 }
-                (a != b).then(|| ([a.min(b), a.max(b)], pieces))
+            }
+        }
+        stretches.retain(|(edge, _)| edge[0] != edge[1]);
+        stretches.sort_unstable_by(|(e, p), (f, q)| {
+            e.cmp(f).then_with(|| match (p, q) {
+                (Some(p), Some(q)) => p.order(q),
+                _ => p.is_some().cmp(&q.is_some()),
             })
-            .collect();
-        turned.sort_by_key(|(edge, _)| *edge);
+        });
+        stretches.dedup();
         let mut made = Arrangement {
-            points: order,
+            points,
             piece_start: vec![0],
             ..Arrangement::default()
         };
-        let mut at = 0;
-        while at < turned.len() {
-            let edge = turned[at].0;
-            let mut pieces = Vec::new();
-            while at < turned.len() && turned[at].0 == edge {
-                pieces.append(&mut turned[at].1);
-                at += 1;
-            }
-            pieces.sort_by(|p, q| {
-                (p.line.cmp(&q.line))
-                    .then(p.from_m.total_cmp(&q.from_m))
-                    .then(p.to_m.total_cmp(&q.to_m))
-            });
-            pieces.dedup();
-            made.edges.push(edge);
-            made.pieces.append(&mut pieces);
+        for same in stretches.chunk_by(|s, t| s.0 == t.0) {
+            made.edges.push(same[0].0);
+            made.pieces
+                .extend(same.iter().filter_map(|(_, piece)| *piece));
             made.piece_start.push(made.pieces.len() as u32);
         }
         made.drop_unused_points();
         made
     }
 
-    fn drop_unused_points(&mut self) {
+    /// Renames nodes so that only those remain that an edge uses.
+    pub(super) fn drop_unused_points(&mut self) {
         let mut used = vec![false; self.points.len()];
         for edge in &self.edges {
             for &node in edge {
@@ -121,4 +133,19 @@ impl Arrangement {
             used[node - 1]
         });
     }
+}
+
+/// The different points in order, and for each given point its place there.
+fn sorted_points(given: &[Point]) -> (Vec<Point>, Vec<u32>) {
+    let mut order: Vec<(Point, u32)> = given.iter().copied().zip(0..).collect();
+    order.sort_unstable();
+    let mut points = Vec::with_capacity(given.len());
+    let mut id = vec![0; given.len()];
+    for (point, old) in order {
+        if points.last() != Some(&point) {
+            points.push(point);
+        }
+        id[old as usize] = points.len() as u32 - 1;
+    }
+    (points, id)
 }

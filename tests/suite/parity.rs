@@ -1,1 +1,407 @@
 //! Tests of `parity`.
+
+use polder::intervals::goals::Goals;
+use polder::parity;
+use polder::parity::Options;
+use polder::parity::balance::Balance;
+use polder::parity::check::check;
+use polder::parity::error::Error;
+use polder::parity::graph::Edge;
+use polder::parity::graph::Graph;
+use polder::parity::programme::COST_UNIT;
+use polder::parity::programme::cost_units;
+use polder::partition::subdomains::Curve;
+use polder::partition::subdomains::OUTSIDE;
+use polder::partition::subdomains::Partition;
+use polder::partition::subdomains::Subdomain;
+use polder::partition::subdomains::SubdomainId;
+use proptest::prelude::*;
+
+const OPTIONS: Options = Options {
+    events_max: u64::MAX,
+    nodes_max: 100,
+    rows_max: 20_000,
+};
+
+/// A partition as parity sees it: only the sides of curves.
+fn partition(subdomains: usize, sides: &[(SubdomainId, SubdomainId)]) -> Partition {
+    let curve = |(k, &(left, right)): (usize, &(SubdomainId, SubdomainId))| Curve {
+        nodes: vec![0, 1],
+        edges: vec![k as u32],
+        left,
+        right,
+        is_seam: false,
+    };
+    Partition {
+        curves: sides.iter().enumerate().map(curve).collect(),
+        subdomains: vec![Subdomain::default(); subdomains],
+    }
+}
+
+fn goals(goal: &[f64], spread: u32) -> Goals {
+    Goals {
+        goal: goal.to_vec(),
+        lower: vec![1; goal.len()],
+        upper: goal.iter().map(|g| g.ceil() as u32 + spread).collect(),
+        weight: vec![1.0; goal.len()],
+    }
+}
+
+fn balanced(partition: &Partition, goals: &Goals) -> Balance {
+    let made = parity::balance(partition, goals, &OPTIONS).unwrap();
+    check(partition, goals, &made).unwrap();
+    made
+}
+
+/// A deterministic stream of numbers in [0, 1).
+struct Dice(u64);
+
+impl Dice {
+    fn roll(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        (self.roll() * n as f64) as usize
+    }
+}
+
+/// A street grid of `side` x `side` blocks, some merged with their eastern neighbour.
+fn city(side: usize, seed: u64) -> (Partition, Goals) {
+    let mut dice = Dice(seed);
+    let mut block: Vec<SubdomainId> = Vec::new();
+    for k in 0..side * side {
+        let merged = k % side > 0 && dice.roll() < 0.15;
+        let last = block.last().copied();
+        block.push(match last {
+            Some(last) if merged => last,
+            Some(last) => last + 1,
+            None => 0,
+        });
+    }
+    let (mut sides, mut goal) = (Vec::new(), Vec::new());
+    let at = |x: usize, y: usize| match x < side && y < side {
+        true => block[y * side + x],
+        false => OUTSIDE,
+    };
+    for y in 0..side {
+        for x in 0..side {
+            let mut street = |a, b| {
+                if a != b {
+                    sides.push((a, b));
+                    goal.push(1.0 + 9.0 * dice.roll());
+                }
+            };
+            street(at(x, y), at(x + 1, y));
+            street(at(x, y), at(x, y + 1));
+            if x == 0 {
+                street(at(x, y), OUTSIDE);
+            }
+            if y == 0 {
+                street(at(x, y), OUTSIDE);
+            }
+        }
+    }
+    let subdomains = block[side * side - 1] as usize + 1;
+    (partition(subdomains, &sides), goals(&goal, 3))
+}
+
+/// The slow twin: all counts within bounds.
+fn brute_force(partition: &Partition, goals: &Goals) -> Option<i64> {
+    fn dive(
+        partition: &Partition,
+        goals: &Goals,
+        curve: usize,
+        odd: u32,
+        cost: i64,
+        best: &mut Option<i64>,
+    ) {
+        if curve == partition.curves.len() {
+            if odd == 0 && best.is_none_or(|least| cost < least) {
+                *best = Some(cost);
+            }
+            return;
+        }
+        for n in goals.lower[curve]..=goals.upper[curve] {
+            let mut odd = odd;
+            for side in [partition.curves[curve].left, partition.curves[curve].right] {
+                if side != OUTSIDE && n % 2 == 1 {
+                    odd ^= 1 << side;
+                }
+            }
+            let cost = cost + cost_units(goals, curve, n);
+            dive(partition, goals, curve + 1, odd, cost, best);
+        }
+    }
+    let mut best = None;
+    dive(partition, goals, 0, 0, 0, &mut best);
+    best
+}
+
+/// The repair that everyone would write: round, then flip along a minimum spanning tree.
+fn spanning_tree(graph: &Graph) -> i64 {
+    let n = graph.odd.len();
+    let node = |id: u32| (id as usize).min(n);
+    let mut order: Vec<&Edge> = graph.edges.iter().collect();
+    order.sort_by_key(|edge| edge.weight);
+    let mut group: Vec<usize> = (0..=n).collect();
+    let mut tree: Vec<(usize, usize, i64)> = Vec::new();
+    for edge in order {
+        let (a, b) = (group[node(edge.a)], group[node(edge.b)]);
+        if a != b {
+            group
+                .iter_mut()
+                .filter(|it| **it == a)
+                .for_each(|it| *it = b);
+            tree.push((node(edge.a), node(edge.b), edge.weight));
+        }
+    }
+    let mut odd: Vec<bool> = graph.odd.iter().copied().chain([false]).collect();
+    let mut total = 0;
+    // Leaves off, one after the other; the outside stays.
+    while !tree.is_empty() {
+        let mut degree = vec![0; n + 1];
+        for &(a, b, _) in &tree {
+            degree[a] += 1;
+            degree[b] += 1;
+        }
+        tree.retain(|&(a, b, weight)| {
+            let leaf = [a, b].into_iter().find(|&v| degree[v] == 1 && v != n);
+            let Some(leaf) = leaf else { return true };
+            let other = a + b - leaf;
+            if odd[leaf] {
+                odd[leaf] = false;
+                odd[other] ^= true;
+                total += weight;
+            }
+            degree[other] -= 1;
+            false
+        });
+    }
+    total
+}
+
+/// Checks a join of any graph: even, and proven optimal by its own certificate.
+fn join_weight(graph: &Graph) -> i64 {
+    let join = parity::minimum_join(graph, u64::MAX);
+    let least = graph.edges.iter().map(|edge| join.cuts.slack2(edge)).min();
+    assert!(
+        least.is_none_or(|least| least >= 0),
+        "an edge pays {least:?} too much"
+    );
+    assert_eq!(2 * join.weight(graph), join.cuts.bound2());
+    join.weight(graph)
+}
+
+fn random_graph(dice: &mut Dice, nodes: usize, edges: usize, weights: usize) -> Graph {
+    let odd = (0..nodes).map(|_| dice.roll() < 0.5).collect();
+    let edges = (0..edges)
+        .map(|label| {
+            let end = |dice: &mut Dice| match dice.below(nodes + 1) {
+                node if node < nodes => node as u32,
+                _ => parity::graph::OUTSIDE,
+            };
+            let (a, b) = (end(dice), end(dice));
+            let weight = dice.below(weights) as i64;
+            Edge {
+                a,
+                b,
+                weight,
+                label: label as u32,
+            }
+        })
+        .collect();
+    Graph::new(odd, edges)
+}
+
+/// All choices of edges.
+fn least_choice(graph: &Graph) -> Option<i64> {
+    let n = graph.odd.len();
+    let bit = |node: u32| {
+        if (node as usize) < n {
+            1_u64 << node
+        } else {
+            0
+        }
+    };
+    let start: u64 = (0..n).filter(|&v| graph.odd[v]).map(|v| 1 << v).sum();
+    (0_u32..1 << graph.edges.len())
+        .filter_map(|choice| {
+            let (mut odd, mut weight) = (start, 0);
+            for (k, edge) in graph.edges.iter().enumerate() {
+                if choice >> k & 1 == 1 {
+                    odd ^= bit(edge.a) ^ bit(edge.b);
+                    weight += edge.weight;
+                }
+            }
+            (odd == 0).then_some(weight)
+        })
+        .min()
+}
+
+#[test]
+fn one_triangle_between_two_others() {
+    let p = partition(1, &[(0, OUTSIDE), (0, OUTSIDE), (0, OUTSIDE)]);
+    let made = balanced(&p, &goals(&[3.1, 4.4, 2.0], 3));
+    assert_eq!(made.counts, [3, 5, 2]);
+    assert!(made.proven);
+}
+
+#[test]
+fn free_lines_never_matter() {
+    let p = partition(1, &[(0, OUTSIDE), (0, OUTSIDE), (0, 0)]);
+    let made = balanced(&p, &goals(&[3.0, 5.0, 7.0], 3));
+    assert_eq!(made.counts, [3, 5, 7]);
+    assert_eq!(made.gap(), 0.0);
+}
+
+#[test]
+fn infeasible_names_the_sub_domains() {
+    let p = partition(3, &[(0, OUTSIDE), (1, 2), (1, OUTSIDE), (2, OUTSIDE)]);
+    let mut g = goals(&[2.0, 3.0, 2.0, 3.0], 2);
+    for fixed in [2, 3] {
+        (g.lower[fixed], g.upper[fixed]) = (fixed as u32, fixed as u32);
+    }
+    let made = parity::balance(&p, &g, &OPTIONS);
+    assert_eq!(
+        made.unwrap_err(),
+        Error::Infeasible {
+            subdomain: 1,
+            members: 2
+        }
+    );
+}
+
+#[test]
+fn bounds_in_conflict_are_named() {
+    let p = partition(1, &[(0, OUTSIDE)]);
+    let mut g = goals(&[4.0], 1);
+    (g.lower[0], g.upper[0]) = (5, 4);
+    let made = parity::balance(&p, &g, &OPTIONS);
+    assert_eq!(
+        made.unwrap_err(),
+        Error::Bounds {
+            curve: 0,
+            lower: 5,
+            upper: 4
+        }
+    );
+}
+
+#[test]
+fn small_joins_are_optimal() {
+    let mut dice = Dice(1);
+    for round in 0..3000 {
+        let nodes = 2 + dice.below(7);
+        let edges = 1 + dice.below(14);
+        let graph = random_graph(&mut dice, nodes, edges, [3, 10, 1000][round % 3]);
+        match least_choice(&graph) {
+            Some(least) => assert_eq!(join_weight(&graph), least, "round {round}: {graph:?}"),
+            None => assert!(graph.hopeless().is_some()),
+        }
+    }
+}
+
+/// Ties, zero weights, dense and sparse: the certificate is its own twin at any size.
+#[test]
+fn middle_sized_joins_prove_themselves() {
+    let mut dice = Dice(2);
+    for round in 0..300 {
+        let nodes = 20 + dice.below(200);
+        let edges = nodes + dice.below(3 * nodes);
+        let graph = random_graph(&mut dice, nodes, edges, [2, 5, 100, 100_000][round % 4]);
+        if graph.hopeless().is_none() {
+            assert!(join_weight(&graph) <= spanning_tree(&graph));
+        }
+    }
+}
+
+#[test]
+fn a_limit_of_work_leaves_a_valid_bound() {
+    let (p, g) = city(12, 5);
+    let best = balanced(&p, &g);
+    for events_max in [0, 50, 500, 1000] {
+        let made = parity::balance(
+            &p,
+            &g,
+            &Options {
+                events_max,
+                ..OPTIONS
+            },
+        )
+        .unwrap();
+        check(&p, &g, &made).unwrap();
+        assert!(made.bound <= best.objective + COST_UNIT / 2.0);
+        assert!(made.objective >= best.objective - COST_UNIT / 2.0);
+    }
+}
+
+#[test]
+fn a_certificate_that_claims_too_much_is_refused() {
+    let (p, g) = city(6, 3);
+    let mut made = balanced(&p, &g);
+    made.cuts.value2[0] += 2;
+    assert!(check(&p, &g, &made).is_err());
+}
+
+#[test]
+fn ten_thousand_blocks_are_proven() {
+    let (p, g) = city(105, 7);
+    let made = balanced(&p, &g);
+    assert!(made.proven, "gap {}", made.gap());
+    assert!((0.3..0.7).contains(&made.odd_share), "{}", made.odd_share);
+    let claimed = made.claimed.expect("HiGHS solves it");
+    assert!(
+        (claimed - made.objective).abs() < 1e-6 * made.objective,
+        "{claimed}"
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(150))]
+
+    #[test]
+    fn counts_are_those_of_brute_force(
+        sides in prop::collection::vec((0_u32..5, 0_u32..6, 1.0_f64..4.0, 0_u32..3), 1..9),
+    ) {
+        let named = |side: u32| if side == 5 { OUTSIDE } else { side };
+        let p = partition(5, &sides.iter().map(|s| (s.0, named(s.1))).collect::<Vec<_>>());
+        let mut g = goals(&sides.iter().map(|s| s.2).collect::<Vec<_>>(), 1);
+        for (k, side) in sides.iter().enumerate().filter(|(_, side)| side.3 == 0) {
+            (g.lower[k], g.upper[k]) = (side.2 as u32, side.2 as u32);
+        }
+        match brute_force(&p, &g) {
+            Some(least) => {
+                let made = balanced(&p, &g);
+                prop_assert_eq!((made.objective / COST_UNIT).round() as i64, least);
+                prop_assert!(made.proven);
+            }
+            None => prop_assert!(parity::balance(&p, &g, &OPTIONS).is_err()),
+        }
+    }
+
+    #[test]
+    fn the_objective_does_not_depend_on_numbers(seed in 0_u64..1000) {
+        let (p, g) = city(7, seed);
+        let mut dice = Dice(seed);
+        let mut order: Vec<usize> = (0..p.curves.len()).collect();
+        let mut name: Vec<u32> = (0..p.subdomains.len() as u32).collect();
+        for k in (1..order.len()).rev() {
+            order.swap(k, dice.below(k + 1));
+        }
+        for k in (1..name.len()).rev() {
+            name.swap(k, dice.below(k + 1));
+        }
+        let renamed = |side: u32| if side == OUTSIDE { side } else { name[side as usize] };
+        let sides: Vec<(u32, u32)> = (order.iter())
+            .map(|&k| (renamed(p.curves[k].right), renamed(p.curves[k].left)))
+            .collect();
+        let goal: Vec<f64> = order.iter().map(|&k| g.goal[k]).collect();
+        let (q, h) = (partition(p.subdomains.len(), &sides), goals(&goal, 3));
+        prop_assert_eq!(balanced(&p, &g).objective, balanced(&q, &h).objective);
+    }
+}

@@ -1,0 +1,96 @@
+//! The discretised walks of one sub-domain.
+
+use crate::boundary::apportion::apportion;
+use crate::boundary::part_of;
+use crate::domain::line::Domain;
+use crate::domain::size::SizeWish;
+use crate::geometry::point::Point;
+use crate::geometry::point::Xy;
+use crate::intervals::wish::EdgeWish;
+use crate::intervals::wish::edge_wish;
+use crate::noding::arrangement::Arrangement;
+use crate::partition::subdomains::Partition;
+use crate::partition::subdomains::SubdomainId;
+use rustc_hash::FxHashMap;
+
+/// All that the walks of a sub-domain are made from: the city's topology and its counts.
+#[derive(Clone, Copy)]
+pub struct Site<'a> {
+    /// For the grid and the kinds.
+    pub domain: &'a Domain,
+    /// Sizes, the same as `intervals` had.
+    pub sizes: &'a SizeWish,
+    /// Points and edges.
+    pub arrangement: &'a Arrangement,
+    /// Curves and sub-domains.
+    pub partition: &'a Partition,
+    /// Intervals of each curve.
+    pub counts: &'a [u32],
+    /// First global ids ([`numbering`](crate::boundary::numbering)).
+    pub first: &'a [u64],
+}
+
+/// The walks of one sub-domain as nodes and closed index sequences, in the order of
+/// `Subdomain::walks`. A free line is walked on both sides, so its nodes occur twice.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Walks {
+    /// The distinct nodes, metres, in the order in which the walks first meet them.
+    pub nodes: Vec<Xy>,
+    /// Global id of each node.
+    pub ids: Vec<u64>,
+    /// Closed walks, indices into `nodes`; the first is not repeated at the end.
+    pub walks: Vec<Vec<u32>>,
+    /// For each walk, for each of its edges `walk[k] -> walk[k + 1]`: true on a seam.
+    pub on_seam: Vec<Vec<bool>>,
+}
+
+/// The walks of `subdomain`.
+pub fn walks(site: &Site, subdomain: SubdomainId) -> Walks {
+    let mut made = Walks::default();
+    let mut local: FxHashMap<u64, u32> = FxHashMap::default();
+    for walk in &site.partition.subdomains[subdomain as usize].walks {
+        let (mut nodes, mut on_seam) = (Vec::new(), Vec::new());
+        for &half in walk {
+            let (ids, at) = curve_nodes(site, half >> 1);
+            let n = ids.len();
+            // The last node of a half-curve is the first of the next one.
+            for step in 0..n - 1 {
+                let k = if half & 1 == 0 { step } else { n - 1 - step };
+                let index = *local.entry(ids[k]).or_insert_with(|| {
+                    made.nodes.push(at[k]);
+                    made.ids.push(ids[k]);
+                    made.nodes.len() as u32 - 1
+                });
+                nodes.push(index);
+                on_seam.push(site.partition.curves[(half >> 1) as usize].is_seam);
+            }
+        }
+        made.walks.push(nodes);
+        made.on_seam.push(on_seam);
+    }
+    made
+}
+
+/// Global ids and positions of the nodes of `curve`, both ends included, in its own direction.
+pub fn curve_nodes(site: &Site, curve: u32) -> (Vec<u64>, Vec<Xy>) {
+    let chain = &site.partition.curves[curve as usize];
+    let count = site.counts[curve as usize];
+    let wishes: Vec<EdgeWish> = (chain.edges.iter())
+        .map(|&edge| edge_wish(site.domain, site.sizes, site.arrangement, edge))
+        .collect();
+    let shares = apportion(&wishes, count);
+    let point = |node: u32| -> Point { site.arrangement.points[node as usize] };
+    let mut next = site.first[curve as usize];
+    let (mut ids, mut at) = (Vec::new(), Vec::new());
+    for (ends, &share) in chain.nodes.windows(2).zip(&shares) {
+        ids.push(u64::from(ends[0]));
+        ids.extend(next..next + u64::from(share) - 1);
+        next += u64::from(share) - 1;
+        let [a, b] = [point(ends[0]), point(ends[1])];
+        at.extend((0..share).map(|k| part_of(&site.domain.grid, a, b, k, share)));
+    }
+    let last = chain.nodes[chain.nodes.len() - 1];
+    ids.push(u64::from(last));
+    at.push(site.domain.grid.local_m(point(last)));
+    (ids, at)
+}

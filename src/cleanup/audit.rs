@@ -1,0 +1,147 @@
+//! Measures the result against the input: what is covered, how far it moved, what was lost.
+
+use crate::cleanup::changes::Dropped;
+use crate::cleanup::changes::Reason;
+use crate::cleanup::changes::Tally;
+use crate::cleanup::graph::Graph;
+use crate::cleanup::measure::to_segment;
+use crate::domain::line::LineId;
+use crate::geometry::point::Xy;
+use crate::noding::arrangement::Arrangement;
+use crate::noding::arrangement::Piece;
+
+/// A stretch of a line: line, from, to.
+type Stretch = (LineId, f64, f64);
+
+/// Stretches shorter than this are rounding, metres.
+const ROUNDING_M: f64 = 1e-6;
+
+/// What the input has and the result does not, with the reason, and the table of figures.
+pub(super) fn audit(graph: &Graph, input: &Arrangement) -> (Vec<Dropped>, Tally) {
+    let wanted = stretches(graph, input.pieces.iter(), false);
+    let live = || graph.edges.iter().filter(|edge| edge.alive);
+    let there = stretches(graph, live().flat_map(|edge| &edge.pieces), true);
+    let mut dropped: Vec<Dropped> = Vec::new();
+    for (line, from_m, to_m) in subtract(&wanted, &there) {
+        let known = graph.dropped.iter().filter(|it| it.line == line);
+        let middle = 0.5 * (from_m + to_m);
+        let reason = (known
+            .clone()
+            .find(|it| it.from_m <= middle && middle <= it.to_m))
+        .or(known.clone().next())
+        .map_or(Reason::BeyondTolerance, |it| it.reason);
+        dropped.push(Dropped {
+            line,
+            reason,
+            from_m,
+            to_m,
+        });
+    }
+    let mut tally = displacements(graph);
+    let total = |it: &[Stretch]| it.iter().map(|(_, from, to)| to - from).sum::<f64>();
+    tally.length_m = total(&wanted);
+    tally.length_dropped_m = dropped.iter().map(|it| it.to_m - it.from_m).sum();
+    tally.rows = rows(graph);
+    (dropped, tally)
+}
+
+/// The union of the pieces, sorted; of constraint lines only.
+fn stretches<'p>(
+    graph: &Graph,
+    pieces: impl Iterator<Item = &'p Piece>,
+    _there: bool,
+) -> Vec<Stretch> {
+    let mut all: Vec<Stretch> = pieces
+        .filter(|piece| !graph.measure.is_rim(piece.line))
+        .map(|it| (it.line, it.from_m.min(it.to_m), it.from_m.max(it.to_m)))
+        .collect();
+    all.sort_by(|a, b| {
+        a.0.cmp(&b.0)
+            .then(a.1.total_cmp(&b.1))
+            .then(a.2.total_cmp(&b.2))
+    });
+    let mut union: Vec<Stretch> = Vec::new();
+    for (line, from, to) in all {
+        match union.last_mut() {
+            Some(last) if last.0 == line && from <= last.2 + ROUNDING_M => last.2 = last.2.max(to),
+            _ => union.push((line, from, to)),
+        }
+    }
+    union
+}
+
+/// What is in `wanted` and not in `there`; both sorted unions.
+fn subtract(wanted: &[Stretch], there: &[Stretch]) -> Vec<Stretch> {
+    let mut missing = Vec::new();
+    let mut k = 0;
+    for &(line, from, to) in wanted {
+        while k < there.len() && (there[k].0 < line || (there[k].0 == line && there[k].2 <= from)) {
+            k += 1;
+        }
+        let (mut at, mut j) = (from, k);
+        while j < there.len() && there[j].0 == line && there[j].1 < to {
+            if there[j].1 > at + ROUNDING_M {
+                missing.push((line, at, there[j].1));
+            }
+            at = at.max(there[j].2);
+            j += 1;
+        }
+        if to > at + ROUNDING_M {
+            missing.push((line, at, to));
+        }
+    }
+    missing
+}
+
+/// Largest and 99 % displacement by length, of every segment of every piece from its edge.
+fn displacements(graph: &Graph) -> Tally {
+    let mut samples: Vec<(f64, f64)> = Vec::new();
+    for edge in graph.edges.iter().filter(|edge| edge.alive) {
+        let [a, b] = edge.ends.map(|node| graph.metres(node));
+        for piece in &edge.pieces {
+            let (low, high) = (piece.from_m.min(piece.to_m), piece.from_m.max(piece.to_m));
+            let mut way: Vec<Xy> = vec![graph.measure.point(piece.line, low)];
+            graph.measure.visit_vertices(piece, |p| way.push(p));
+            way.push(graph.measure.point(piece.line, high));
+            for pair in way.windows(2) {
+                let [u, v] = [pair[0], pair[1]];
+                let length = crate::cleanup::measure::distance(u, v);
+                // the distance to a segment is convex along the pair: quarters are fine enough
+                for k in 0..4 {
+                    let t = (f64::from(k) + 0.5) / 4.0;
+                    let p = [u[0] + t * (v[0] - u[0]), u[1] + t * (v[1] - u[1])];
+                    samples.push((to_segment(p, a, b).0, length / 4.0));
+                }
+                samples.push((to_segment(u, a, b).0, 0.0));
+                samples.push((to_segment(v, a, b).0, 0.0));
+            }
+        }
+    }
+    samples.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let total: f64 = samples.iter().map(|it| it.1).sum();
+    let mut below = 0.0;
+    let p99 = samples.iter().find(|it| {
+        below += it.1;
+        below >= 0.99 * total
+    });
+    Tally {
+        displacement_max_m: samples.last().map_or(0.0, |it| it.0),
+        displacement_p99_m: p99.map_or(0.0, |it| it.0),
+        ..Tally::default()
+    }
+}
+
+fn rows(graph: &Graph) -> Vec<(&'static str, u64, f64)> {
+    let mut rows: Vec<(&'static str, u64, f64)> = Vec::new();
+    for change in &graph.changes {
+        match rows.iter_mut().find(|row| row.0 == change.what) {
+            Some(row) => {
+                row.1 += 1;
+                row.2 = row.2.max(change.moved_m);
+            }
+            None => rows.push((change.what, 1, change.moved_m)),
+        }
+    }
+    rows.sort_by(|a, b| a.0.cmp(b.0));
+    rows
+}

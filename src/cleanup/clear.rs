@@ -1,0 +1,107 @@
+//! Is the way free? The exact test behind every operation: nothing may be crossed or swept over.
+
+use smallvec::SmallVec;
+
+use crate::cleanup::graph::Graph;
+use crate::cleanup::measure::to_segment;
+use crate::geometry::point::Point;
+use crate::geometry::predicates::on_segment;
+use crate::geometry::predicates::orient;
+
+/// An edge that changes its place, and all that it sweeps on its way.
+pub(super) struct Sweep {
+    /// The swept triangle; its first two corners are the long side that is searched around.
+    pub(super) triangle: [Point; 3],
+    /// Where edges will be: these may not touch any other.
+    pub(super) fresh: SmallVec<[(Point, Point); 2]>,
+}
+
+/// What makes room for a sweep, and what may not be in its way.
+pub(super) struct Room<'a> {
+    /// Edges that leave.
+    pub(super) gone: &'a [u32],
+    /// A node that leaves its place.
+    pub(super) mover: Option<Point>,
+    /// A corner of the triangle that must not hold a node yet.
+    pub(super) vacant: Option<Point>,
+}
+
+impl Graph<'_> {
+    /// True if the sweeps meet no node and their fresh segments no edge. Equal edges do not count:
+    /// they will take up the fresh one.
+    ///
+    /// This keeps the graph planar, and in the same order around each node: an edge that does not
+    /// cross the old segment, nor the new one, nor has an end in between, is not passed.
+    pub(super) fn is_clear(&self, sweeps: &[Sweep], room: &Room) -> bool {
+        let mut found = Vec::with_capacity(32);
+        sweeps.iter().all(|sweep| {
+            let [a, b, c] = sweep.triangle;
+            self.index.near(a, b, height(a, b, c), &mut found);
+            found.iter().all(|&edge| {
+                let ends = self.edges[edge as usize].ends.map(|node| self.point(node));
+                ends.iter().all(|&end| room.allows(sweep.triangle, end))
+                    && (room.gone.contains(&edge)
+                        || (sweep.fresh.iter()).all(|&(u, v)| !touches(u, v, ends[0], ends[1])))
+            })
+        })
+    }
+}
+
+impl Room<'_> {
+    fn allows(&self, triangle: [Point; 3], end: Point) -> bool {
+        if Some(end) == self.mover {
+            return true;
+        }
+        let is_corner = triangle.contains(&end) && self.vacant != Some(end);
+        is_corner || !in_triangle(end, triangle)
+    }
+}
+
+/// Distance of `c` from the segment `a b`, in cells.
+fn height(a: Point, b: Point, c: Point) -> f64 {
+    let [a, b, c] = [a, b, c].map(|p| [f64::from(p.x), f64::from(p.y)]);
+    to_segment(c, a, b).0
+}
+
+/// True if `p` lies in the closed triangle, of whatever orientation, flat ones included.
+fn in_triangle(p: Point, [a, b, c]: [Point; 3]) -> bool {
+    let within = |v: i32, u: i32, w: i32, x: i32| u.min(w).min(x) <= v && v <= u.max(w).max(x);
+    if !within(p.x, a.x, b.x, c.x) || !within(p.y, a.y, b.y, c.y) {
+        return false;
+    }
+    let sides = [orient(a, b, p), orient(b, c, p), orient(c, a, p)];
+    sides.iter().all(|&side| side >= 0) || sides.iter().all(|&side| side <= 0)
+}
+
+/// True if the segments `a b` and `c d` have a point in common other than an end of both. Equal
+/// segments do not touch.
+pub(super) fn touches(a: Point, b: Point, c: Point, d: Point) -> bool {
+    match (a == c, a == d, b == c, b == d) {
+        (true, _, _, true) | (_, true, true, _) => false,
+        (true, ..) => overlap(a, b, d),
+        (_, true, ..) => overlap(a, b, c),
+        (_, _, true, _) => overlap(b, a, d),
+        (.., true) => overlap(b, a, c),
+        _ => meet(a, b, c, d),
+    }
+}
+
+/// True if one of the segments `hub u` and `hub v` lies on the other.
+fn overlap(hub: Point, u: Point, v: Point) -> bool {
+    on_segment(hub, u, v) || on_segment(hub, v, u)
+}
+
+/// True if the closed segments have a common point.
+fn meet(a: Point, b: Point, c: Point, d: Point) -> bool {
+    let apart = |p: Point, q: Point, r: Point, s: Point| {
+        p.x.max(q.x) < r.x.min(s.x) || p.y.max(q.y) < r.y.min(s.y)
+    };
+    if apart(a, b, c, d) || apart(c, d, a, b) {
+        return false;
+    }
+    // on one line, overlapping boxes are overlapping segments
+    let sides = |p: Point, q: Point, r: Point, s: Point| {
+        orient(p, q, r).signum() * orient(p, q, s).signum()
+    };
+    sides(a, b, c, d) <= 0 && sides(c, d, a, b) <= 0
+}

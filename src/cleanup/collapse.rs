@@ -1,0 +1,152 @@
+//! Closes faces that are too small or too thin to hold elements.
+
+use crate::cleanup::changes::Reason;
+use crate::cleanup::graph::Graph;
+use crate::cleanup::measure::distance;
+use crate::cleanup::measure::to_segment;
+use crate::cleanup::separate::gap_m;
+use crate::cleanup::separate::join;
+use crate::cleanup::wedges::sorted_star;
+
+/// Which faces are closed, in shares of the local mesh size.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Thin {
+    /// Faces whose 2 x area / perimeter is below this: the width of a strip, the inscribed radius
+    /// of a round face.
+    pub(super) width: f64,
+    /// A line moves at most this far to close one.
+    pub(super) reach: f64,
+    /// How much of the tolerance may be used.
+    pub(super) share: f64,
+}
+
+/// A face's outer walk and how thin it is.
+struct Face {
+    width: f64,
+    /// Half-edges: edge and first node.
+    walk: Vec<(u32, u32)>,
+}
+
+/// Faces with more edges than this are not thin in the sense of one place to close.
+const WALK_MAX: usize = 64;
+
+/// Closes thin faces, the thinnest first, one step a face; returns how many steps.
+pub(super) fn collapse_thin(graph: &mut Graph, thin: &Thin) -> usize {
+    let mut faces = thin_faces(graph, thin.width);
+    faces.sort_by(|a, b| {
+        let place = |face: &Face| graph.point(face.walk[0].1);
+        a.width
+            .total_cmp(&b.width)
+            .then_with(|| place(a).cmp(&place(b)))
+    });
+    let mut steps = 0;
+    for face in faces {
+        let is_there = face
+            .walk
+            .iter()
+            .all(|&(edge, _)| graph.edges[edge as usize].alive);
+        if is_there && (close(graph, thin, &face) || drop_loop(graph, &face)) {
+            steps += 1;
+        }
+    }
+    steps
+}
+
+/// All bounded faces inside the domain that are thin.
+fn thin_faces(graph: &Graph, width: f64) -> Vec<Face> {
+    let mut next = vec![[u32::MAX; 2]; graph.edges.len()];
+    for node in 0..graph.at.len() as u32 {
+        let star = sorted_star(graph, node);
+        for (k, &edge) in star.iter().enumerate() {
+            // arriving at `node` along `edge`, the walk of the face on the left leaves clockwise
+            let leaves = star[(k + star.len() - 1) % star.len()];
+            let arrives = usize::from(graph.edges[edge as usize].ends[0] == node);
+            next[edge as usize][arrives] = leaves;
+        }
+    }
+    let mut seen = vec![[false; 2]; graph.edges.len()];
+    let mut faces = Vec::new();
+    for edge in graph.live() {
+        for side in 0..2 {
+            if !seen[edge as usize][side] {
+                faces.extend(walk(graph, &next, &mut seen, edge, side, width));
+            }
+        }
+    }
+    faces
+}
+
+/// The face on the left of `edge`, from end `side` on, if it is thin.
+fn walk(
+    graph: &Graph,
+    next: &[[u32; 2]],
+    seen: &mut [[bool; 2]],
+    edge: u32,
+    side: usize,
+    width: f64,
+) -> Option<Face> {
+    let (mut edge, mut side) = (edge, side);
+    let (mut walk, mut area, mut length, mut size) = (Vec::new(), 0.0, 0.0, f64::INFINITY);
+    let is_inside = graph.edges[edge as usize].inside[side];
+    let origin = graph.metres(graph.edges[edge as usize].ends[side]);
+    while !seen[edge as usize][side] {
+        seen[edge as usize][side] = true;
+        let it = &graph.edges[edge as usize];
+        let (a, b) = (graph.metres(it.ends[side]), graph.metres(it.ends[1 - side]));
+        area += (a[0] - origin[0]) * (b[1] - origin[1]) - (b[0] - origin[0]) * (a[1] - origin[1]);
+        length += distance(a, b);
+        size = size.min(it.size_m);
+        walk.push((edge, it.ends[side]));
+        let leaves = next[edge as usize][side];
+        side = usize::from(graph.edges[leaves as usize].ends[0] != it.ends[1 - side]);
+        edge = leaves;
+    }
+    let is_thin = is_inside && area > 0.0 && area / length < width * size;
+    (is_thin && walk.len() <= WALK_MAX).then_some(Face {
+        width: area / length / size,
+        walk,
+    })
+}
+
+/// Joins the node and the edge of the face that are nearest to each other.
+fn close(graph: &mut Graph, thin: &Thin, face: &Face) -> bool {
+    let mut pairs = Vec::new();
+    for &(_, node) in &face.walk {
+        for &(edge, _) in &face.walk {
+            let size = graph.edges[edge as usize].size_m;
+            if let Some(gap) = gap_m(graph, node, edge).filter(|&gap| gap < thin.reach * size) {
+                let (a, b) = graph.ends_m(edge);
+                // prefers a foot in the middle of the edge to one at its end
+                let t = to_segment(graph.metres(node), a, b).1;
+                let aside = (t - 0.5).abs() * 0.1 * size;
+                pairs.push((gap + aside, node, edge));
+            }
+        }
+    }
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
+    pairs.iter().any(|&(_, node, edge)| {
+        graph.edges[edge as usize].alive && join(graph, node, edge, 0.25, thin.share).is_some()
+    })
+}
+
+/// Drops a loop that hangs on at most one junction.
+fn drop_loop(graph: &mut Graph, face: &Face) -> bool {
+    let junctions = face
+        .walk
+        .iter()
+        .filter(|&&(_, node)| graph.degree(node) > 2)
+        .count();
+    let is_free =
+        (face.walk.iter()).all(|&(edge, _)| graph.edges[edge as usize].inside == [true; 2]);
+    if junctions > 1 || !is_free {
+        return false;
+    }
+    let at = graph.point(face.walk[0].1);
+    for &(edge, _) in &face.walk {
+        if graph.edges[edge as usize].alive {
+            graph.delete(edge, Reason::SmallLoop);
+        }
+    }
+    graph.note("dropped-loop", at, 0.0);
+    true
+}

@@ -1,0 +1,300 @@
+//! The planar graph while it is being changed.
+
+use smallvec::SmallVec;
+
+use crate::cleanup::changes::Change;
+use crate::cleanup::changes::Dropped;
+use crate::cleanup::changes::Reason;
+use crate::cleanup::index::Index;
+use crate::cleanup::measure::Measure;
+use crate::geometry::point::Point;
+use crate::geometry::point::Xy;
+use crate::noding::arrangement::Arrangement;
+use crate::noding::arrangement::Piece;
+use crate::noding::rim::rim_side;
+use crate::noding::rim::vote;
+
+pub(super) type Pieces = SmallVec<[Piece; 2]>;
+
+/// An edge of the changing graph.
+#[derive(Clone, Debug)]
+pub(super) struct Edge {
+    pub(super) ends: [u32; 2],
+    /// From `ends[0]` to `ends[1]`.
+    pub(super) pieces: Pieces,
+    /// Is the domain on its left, on its right? Kept through all merges: the pieces alone could not
+    /// tell a closed gap from a closed wall.
+    pub(super) inside: [bool; 2],
+    /// Least wished edge length of its lines, metres.
+    pub(super) size_m: f64,
+    /// Highest rank of its lines.
+    pub(super) rank: f64,
+    pub(super) alive: bool,
+}
+
+impl Edge {
+    pub(super) fn other(&self, node: u32) -> u32 {
+        self.ends[usize::from(self.ends[0] == node)]
+    }
+
+    pub(super) fn is_rim(&self) -> bool {
+        self.inside[0] != self.inside[1]
+    }
+
+    /// Its pieces in the direction away from `node`.
+    pub(super) fn pieces_from(&self, node: u32) -> Pieces {
+        if self.ends[0] == node {
+            self.pieces.clone()
+        } else {
+            self.pieces.iter().map(turned).collect()
+        }
+    }
+
+    /// Its sides (left, right) in the direction away from `node`.
+    pub(super) fn inside_from(&self, node: u32) -> [bool; 2] {
+        let [left, right] = self.inside;
+        if self.ends[0] == node {
+            [left, right]
+        } else {
+            [right, left]
+        }
+    }
+}
+
+pub(super) fn turned(piece: &Piece) -> Piece {
+    Piece {
+        line: piece.line,
+        from_m: piece.to_m,
+        to_m: piece.from_m,
+    }
+}
+
+/// An edge that is about to be added: away from a node that the operation knows.
+#[derive(Clone, Debug)]
+pub(super) struct Draft {
+    pub(super) to: u32,
+    pub(super) pieces: Pieces,
+    pub(super) inside: [bool; 2],
+}
+
+/// Nodes, edges and their index. Ids are never reused, so they order things the same on each run.
+pub(super) struct Graph<'a> {
+    pub(super) measure: Measure<'a>,
+    pub(super) at: Vec<Point>,
+    /// Edges at each node.
+    pub(super) star: Vec<SmallVec<[u32; 4]>>,
+    pub(super) edges: Vec<Edge>,
+    pub(super) index: Index,
+    pub(super) changes: Vec<Change>,
+    pub(super) dropped: Vec<Dropped>,
+}
+
+impl<'a> Graph<'a> {
+    pub(super) fn new(arrangement: &Arrangement, measure: Measure<'a>, side: f64) -> Graph<'a> {
+        let mut graph = Graph {
+            measure,
+            at: arrangement.points.clone(),
+            star: vec![SmallVec::new(); arrangement.points.len()],
+            edges: Vec::with_capacity(arrangement.edges.len() * 2),
+            index: Index::new(side),
+            changes: Vec::new(),
+            dropped: Vec::new(),
+        };
+        for (id, &ends) in arrangement.edges.iter().enumerate() {
+            let pieces: Pieces = arrangement.pieces_of(id as u32).into();
+            let rim = rim_side(graph.measure.domain, &pieces);
+            let inside = [rim >= 0, rim <= 0];
+            graph.add(ends, pieces, inside);
+        }
+        graph
+    }
+
+    /// Adds an edge that is not there yet.
+    pub(super) fn add(&mut self, ends: [u32; 2], pieces: Pieces, inside: [bool; 2]) -> u32 {
+        let id = self.edges.len() as u32;
+        let (size_m, rank) = self.size_and_rank(&pieces);
+        self.edges.push(Edge {
+            ends,
+            pieces,
+            inside,
+            size_m,
+            rank,
+            alive: true,
+        });
+        for node in ends {
+            self.star[node as usize].push(id);
+        }
+        self.index
+            .insert(id, self.at[ends[0] as usize], self.at[ends[1] as usize]);
+        id
+    }
+
+    fn size_and_rank(&self, pieces: &[Piece]) -> (f64, f64) {
+        let mut size = f64::INFINITY;
+        let mut rank = 0.0_f64;
+        for piece in pieces {
+            size = size.min(self.measure.size_m[piece.line as usize]);
+            rank = rank.max(self.measure.rank[piece.line as usize]);
+        }
+        if pieces.is_empty() {
+            size = self.measure.default_m;
+        }
+        (size, rank)
+    }
+
+    /// Takes the edge out; its record stays, dead.
+    pub(super) fn remove(&mut self, edge: u32) {
+        let it = &mut self.edges[edge as usize];
+        it.alive = false;
+        let ends = it.ends;
+        for node in ends {
+            self.star[node as usize].retain(|held| *held != edge);
+        }
+        self.index
+            .remove(edge, self.at[ends[0] as usize], self.at[ends[1] as usize]);
+    }
+
+    /// Takes the edge out for good, with a row for every piece.
+    pub(super) fn delete(&mut self, edge: u32, reason: Reason) {
+        for piece in self.edges[edge as usize].pieces.clone() {
+            self.drop_piece(&piece, reason);
+        }
+        self.remove(edge);
+    }
+
+    pub(super) fn drop_piece(&mut self, piece: &Piece, reason: Reason) {
+        self.dropped.push(Dropped {
+            line: piece.line,
+            reason,
+            from_m: piece.from_m.min(piece.to_m),
+            to_m: piece.from_m.max(piece.to_m),
+        });
+    }
+
+    /// Adds what `draft` says from node `from`, or puts its pieces on the edge that is there. In
+    /// that case `beside` tells the sides of the merged edge.
+    pub(super) fn add_or_fuse(&mut self, from: u32, draft: Draft, fused: Option<Fused>) -> u32 {
+        let Some(Fused { edge, inside }) = fused else {
+            return self.add([from, draft.to], draft.pieces, draft.inside);
+        };
+        let it = &mut self.edges[edge as usize];
+        if it.ends[0] == from {
+            it.pieces.extend(draft.pieces);
+            it.inside = inside;
+        } else {
+            it.pieces.extend(draft.pieces.iter().map(turned));
+            it.inside = [inside[1], inside[0]];
+        }
+        let pieces = std::mem::take(&mut it.pieces);
+        let (size_m, rank) = self.size_and_rank(&pieces);
+        let it = &mut self.edges[edge as usize];
+        (it.pieces, it.size_m, it.rank) = (pieces, size_m, rank);
+        edge
+    }
+
+    /// What becomes of a draft that falls onto the edge between `from` and `draft.to`, if there is
+    /// one. `on_left`: the draft came from the left of that edge. `Err` if the domain would vanish
+    /// on both sides.
+    pub(super) fn fuse(
+        &self,
+        from: u32,
+        draft: &Draft,
+        on_left: bool,
+    ) -> Result<Option<Fused>, ()> {
+        let Some(edge) = self.find(from, draft.to) else {
+            return Ok(None);
+        };
+        let there = self.edges[edge as usize].inside_from(from);
+        let (inside, between) = if on_left {
+            ([draft.inside[0], there[1]], [draft.inside[1], there[0]])
+        } else {
+            ([there[0], draft.inside[1]], [there[1], draft.inside[0]])
+        };
+        // both know the strip between them: it is one face
+        debug_assert_eq!(between[0], between[1]);
+        if inside == [false, false] {
+            return Err(());
+        }
+        Ok(Some(Fused { edge, inside }))
+    }
+
+    /// The edge between two nodes.
+    pub(super) fn find(&self, u: u32, v: u32) -> Option<u32> {
+        let (u, v) = if self.star[u as usize].len() <= self.star[v as usize].len() {
+            (u, v)
+        } else {
+            (v, u)
+        };
+        let star = &self.star[u as usize];
+        star.iter()
+            .copied()
+            .find(|&e| self.edges[e as usize].other(u) == v)
+    }
+
+    pub(super) fn point(&self, node: u32) -> Point {
+        self.at[node as usize]
+    }
+
+    pub(super) fn metres(&self, node: u32) -> Xy {
+        self.measure.metres(self.at[node as usize])
+    }
+
+    pub(super) fn degree(&self, node: u32) -> usize {
+        self.star[node as usize].len()
+    }
+
+    /// The nodes at the other ends of a node's edges.
+    pub(super) fn neighbours(&self, node: u32) -> SmallVec<[u32; 6]> {
+        let star = &self.star[node as usize];
+        star.iter()
+            .map(|&e| self.edges[e as usize].other(node))
+            .collect()
+    }
+
+    pub(super) fn ends_m(&self, edge: u32) -> (Xy, Xy) {
+        let [a, b] = self.edges[edge as usize].ends;
+        (self.metres(a), self.metres(b))
+    }
+
+    /// Least wished edge length of the edges at a node, metres.
+    pub(super) fn size_at_m(&self, node: u32) -> f64 {
+        let star = &self.star[node as usize];
+        let sizes = star.iter().map(|&e| self.edges[e as usize].size_m);
+        sizes.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Ids of the live edges.
+    pub(super) fn live(&self) -> Vec<u32> {
+        let all = 0..self.edges.len() as u32;
+        all.filter(|&e| self.edges[e as usize].alive).collect()
+    }
+
+    pub(super) fn note(&mut self, what: &'static str, at: Point, moved_m: f64) {
+        self.changes.push(Change { what, at, moved_m });
+    }
+
+    /// The arrangement as it is now. Ring pieces stay on the rim only, as after clipping; a closed
+    /// wall that carries nothing else goes.
+    pub(super) fn arrangement(&self) -> Arrangement {
+        let mut parts = Vec::with_capacity(self.edges.len());
+        for edge in self.edges.iter().filter(|edge| edge.alive) {
+            let rim = i32::from(edge.inside[0]) - i32::from(edge.inside[1]);
+            let stays = |piece: &&Piece| {
+                let vote = vote(self.measure.domain, piece);
+                vote == 0 || (rim != 0 && vote == rim)
+            };
+            let pieces: Vec<Piece> = edge.pieces.iter().filter(stays).copied().collect();
+            if !pieces.is_empty() {
+                parts.push((edge.ends, pieces));
+            }
+        }
+        Arrangement::from_parts(&self.at, parts)
+    }
+}
+
+/// An edge that takes up a draft, and its sides afterwards, away from the draft's first node.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Fused {
+    pub(super) edge: u32,
+    pub(super) inside: [bool; 2],
+}

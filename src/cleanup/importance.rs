@@ -1,0 +1,69 @@
+//! Which of two nodes stays where it is.
+
+use crate::cleanup::graph::Graph;
+use crate::geometry::point::Point;
+
+/// Compared field by field; the greater stays.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub(super) struct Importance {
+    /// A corner of the outline, or a place where it touches itself.
+    pub(super) is_rim_corner: bool,
+    /// Highest rank of the edges there.
+    pub(super) rank: f64,
+    /// 3 junction, 2 end, 1 corner, 0 on the way.
+    pub(super) role: u8,
+    /// Ties are broken by place.
+    pub(super) at: Point,
+}
+
+/// A turn by more than this is a corner.
+const CORNER_DEG: f64 = 30.0;
+
+impl Importance {
+    pub(super) fn of(graph: &Graph, node: u32) -> Importance {
+        let star = &graph.star[node as usize];
+        let rank = star.iter().map(|&e| graph.edges[e as usize].rank);
+        let turns = turn_deg(graph, node, |_| true).is_some_and(|turn| turn > CORNER_DEG);
+        Importance {
+            is_rim_corner: is_rim_corner(graph, node),
+            rank: rank.fold(0.0, f64::max),
+            role: match star.len() {
+                1 => 2,
+                2 => u8::from(turns),
+                _ => 3,
+            },
+            at: graph.point(node),
+        }
+    }
+}
+
+/// True at corners of the outline and where it touches itself.
+pub(super) fn is_rim_corner(graph: &Graph, node: u32) -> bool {
+    let star = &graph.star[node as usize];
+    if !star.iter().any(|&e| graph.edges[e as usize].is_rim()) {
+        return false;
+    }
+    let turn = turn_deg(graph, node, |e| graph.edges[e as usize].is_rim());
+    turn.is_none_or(|turn| turn > CORNER_DEG)
+}
+
+/// By how much the way over `node` along the edges that `counts` picks turns, degrees; `None`
+/// unless they are two.
+pub(super) fn turn_deg(graph: &Graph, node: u32, counts: impl Fn(u32) -> bool) -> Option<f64> {
+    let mut picked = graph.star[node as usize]
+        .iter()
+        .copied()
+        .filter(|&e| counts(e));
+    let (e, f) = (picked.next()?, picked.next()?);
+    if picked.next().is_some() {
+        return None;
+    }
+    let at = graph.metres(node);
+    let away = |edge: u32| {
+        let end = graph.metres(graph.edges[edge as usize].other(node));
+        [end[0] - at[0], end[1] - at[1]]
+    };
+    let (u, v) = (away(e), away(f));
+    let (cross, dot) = (u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
+    Some(180.0 - cross.abs().atan2(dot).to_degrees())
+}

@@ -1,0 +1,170 @@
+//! How far a stretch of an input line is from the edge that represents it.
+
+use crate::cleanup::Options;
+use crate::cleanup::Tolerance;
+use crate::domain::line::Domain;
+use crate::domain::line::LineId;
+use crate::domain::line::Role;
+use crate::domain::size::SizeWish;
+use crate::geometry::grid::Grid;
+use crate::geometry::point::Point;
+use crate::geometry::point::Xy;
+use crate::noding::arrangement::Piece;
+
+/// The input lines with their stations, sizes, ranks and tolerances, in metres.
+pub(super) struct Measure<'a> {
+    pub(super) domain: &'a Domain,
+    /// Stations of the vertices of all lines; line `i` starts at `start[i]`.
+    stations_m: Vec<f64>,
+    start: Vec<u32>,
+    /// How far each line may be from its edges.
+    pub(super) tolerance_m: Vec<f64>,
+    /// Wished edge length along each line.
+    pub(super) size_m: Vec<f64>,
+    /// Who stays where it is when two lines meet: the higher one. Rings before lines, long before
+    /// short.
+    pub(super) rank: Vec<f64>,
+    /// Wished edge length where no line says otherwise.
+    pub(super) default_m: f64,
+}
+
+/// Added to the rank of rings.
+pub(super) const RIM_RANK: f64 = 1e9;
+
+impl<'a> Measure<'a> {
+    pub(super) fn new(domain: &'a Domain, sizes: &SizeWish, options: &Options) -> Measure<'a> {
+        let mut made = Measure {
+            domain,
+            stations_m: Vec::new(),
+            start: vec![0],
+            tolerance_m: Vec::with_capacity(domain.lines.len()),
+            size_m: Vec::with_capacity(domain.lines.len()),
+            rank: Vec::with_capacity(domain.lines.len()),
+            default_m: sizes.default_m,
+        };
+        for (id, line) in domain.lines.iter().enumerate() {
+            let mut stations = domain.stations_m(id as LineId);
+            let length = *stations.last().expect("a line has two points");
+            made.stations_m.append(&mut stations);
+            made.start.push(made.stations_m.len() as u32);
+            let size = sizes.by_kind_m[usize::from(line.kind)];
+            made.size_m.push(size);
+            made.tolerance_m.push(match options.tolerance {
+                Tolerance::ShareOfSize(share) => share * size,
+                Tolerance::Metres(metres) => metres,
+            });
+            let rim = line.role != Role::Constraint;
+            made.rank.push(length + if rim { RIM_RANK } else { 0.0 });
+        }
+        made
+    }
+
+    pub(super) fn grid(&self) -> &Grid {
+        &self.domain.grid
+    }
+
+    pub(super) fn is_rim(&self, line: LineId) -> bool {
+        self.domain.lines[line as usize].role != Role::Constraint
+    }
+
+    fn stations(&self, line: LineId) -> &[f64] {
+        let line = line as usize;
+        &self.stations_m[self.start[line] as usize..self.start[line + 1] as usize]
+    }
+
+    /// Length of `line`, metres.
+    pub(super) fn length_m(&self, line: LineId) -> f64 {
+        *self.stations(line).last().expect("a line has two points")
+    }
+
+    fn vertex(&self, line: LineId, k: usize) -> Xy {
+        self.grid()
+            .local_m(self.domain.lines[line as usize].points[k])
+    }
+
+    /// The point of `line` at `station_m`.
+    pub(super) fn point(&self, line: LineId, station_m: f64) -> Xy {
+        let stations = self.stations(line);
+        let k = stations.partition_point(|&s| s <= station_m);
+        let k = k.clamp(1, stations.len() - 1) - 1;
+        self.between(line, k, station_m)
+    }
+
+    fn between(&self, line: LineId, k: usize, station_m: f64) -> Xy {
+        let stations = self.stations(line);
+        let (a, b) = (self.vertex(line, k), self.vertex(line, k + 1));
+        let t = ((station_m - stations[k]) / (stations[k + 1] - stations[k])).clamp(0.0, 1.0);
+        [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
+    }
+
+    /// Largest distance between the stretch and the edge `a b`, with the stretch's ends held
+    /// against the edge's. It bounds the Hausdorff distance both ways: the edge is convex, so the
+    /// stretch is farthest at a vertex; and between two ends that are near, the stretch passes
+    /// over all of the edge.
+    pub(super) fn deviation_m(&self, piece: &Piece, a: Xy, b: Xy) -> f64 {
+        let mut worst = distance(self.point(piece.line, piece.from_m), a)
+            .max(distance(self.point(piece.line, piece.to_m), b));
+        self.visit_vertices(piece, |p| worst = worst.max(to_segment(p, a, b).0));
+        worst
+    }
+
+    /// True if [`Measure::deviation_m`] is at most `share` of the line's tolerance.
+    pub(super) fn fits(&self, piece: &Piece, a: Xy, b: Xy, share: f64) -> bool {
+        let limit = share * self.tolerance_m[piece.line as usize];
+        self.deviation_m(piece, a, b) <= limit
+    }
+
+    /// The vertices of the line strictly inside the stretch, in the direction of the line.
+    pub(super) fn visit_vertices(&self, piece: &Piece, mut visit: impl FnMut(Xy)) {
+        let (low, high) = (piece.from_m.min(piece.to_m), piece.from_m.max(piece.to_m));
+        let stations = self.stations(piece.line);
+        let from = stations.partition_point(|&s| s <= low);
+        for k in from..stations.len() {
+            if stations[k] >= high {
+                break;
+            }
+            visit(self.vertex(piece.line, k));
+        }
+    }
+
+    /// The station between `low_m` and `high_m` whose point is nearest to `p`.
+    pub(super) fn nearest(&self, line: LineId, low_m: f64, high_m: f64, p: Xy) -> f64 {
+        let stations = self.stations(line);
+        let first = stations.partition_point(|&s| s <= low_m);
+        let mut k = first.clamp(1, stations.len() - 1) - 1;
+        let mut best = (f64::INFINITY, low_m);
+        while k + 1 < stations.len() && stations[k] < high_m {
+            let (from, to) = (stations[k].max(low_m), stations[k + 1].min(high_m));
+            let (a, b) = (self.between(line, k, from), self.between(line, k, to));
+            let (away, t) = to_segment(p, a, b);
+            if away < best.0 {
+                best = (away, from + t * (to - from));
+            }
+            k += 1;
+        }
+        best.1
+    }
+
+    /// `p` in metres.
+    pub(super) fn metres(&self, p: Point) -> Xy {
+        self.grid().local_m(p)
+    }
+}
+
+/// Distance between two positions, metres.
+pub(super) fn distance(a: Xy, b: Xy) -> f64 {
+    let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
+    (dx * dx + dy * dy).sqrt()
+}
+
+/// Distance of `p` from the segment `a b`, and where the nearest point lies on it, in 0..1.
+pub(super) fn to_segment(p: Xy, a: Xy, b: Xy) -> (f64, f64) {
+    let (ux, uy) = (b[0] - a[0], b[1] - a[1]);
+    let length2 = ux * ux + uy * uy;
+    let t = if length2 > 0.0 {
+        (((p[0] - a[0]) * ux + (p[1] - a[1]) * uy) / length2).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    (distance(p, [a[0] + t * ux, a[1] + t * uy]), t)
+}

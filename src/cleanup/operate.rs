@@ -1,0 +1,259 @@
+//! The four operations on the graph, each refused unless it is legal: the way is clear, and every
+//! stretch of input that it touches stays within tolerance of its edge.
+
+use smallvec::SmallVec;
+use smallvec::smallvec;
+
+use crate::cleanup::changes::Reason;
+use crate::cleanup::clear::Room;
+use crate::cleanup::clear::Sweep;
+use crate::cleanup::graph::Draft;
+use crate::cleanup::graph::Fused;
+use crate::cleanup::graph::Graph;
+use crate::cleanup::stations::Absorbed;
+use crate::geometry::point::Point;
+use crate::geometry::predicates::orient;
+
+/// What a bent edge is bent to.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Bend {
+    /// A node that is there.
+    To(u32),
+    /// A new node at a free point.
+    At(Point),
+}
+
+type Drafts = SmallVec<[Draft; 6]>;
+
+impl Graph<'_> {
+    /// Moves node `v` to the free point `p`. `share`: of the tolerance.
+    pub(super) fn shift(&mut self, v: u32, p: Point, share: f64) -> bool {
+        if p == self.point(v) {
+            return false;
+        }
+        let mut drafts = self.drafts(v);
+        self.restation(&mut drafts, self.measure.metres(p));
+        if !self.all_fit(&drafts, p, share) || !self.star_is_clear(v, p, &drafts, Some(p)) {
+            return false;
+        }
+        let gone: SmallVec<[u32; 6]> = self.star[v as usize].iter().copied().collect();
+        for &edge in &gone {
+            self.remove(edge);
+        }
+        self.at[v as usize] = p;
+        for draft in drafts {
+            self.add_or_fuse(v, draft, None);
+        }
+        true
+    }
+
+    /// Moves node `v` onto node `w`: an edge between them is contracted, edges to the same
+    /// neighbour become one.
+    pub(super) fn merge(&mut self, v: u32, w: u32, share: f64) -> bool {
+        let (q, p) = (self.point(v), self.point(w));
+        let contracted = self.find(v, w);
+        let mut drafts = self.drafts(v);
+        drafts.retain(|draft| draft.to != w);
+        let absorbed = contracted.map_or_else(Absorbed::default, |edge| {
+            self.absorb(edge, v, w, &mut drafts)
+        });
+        self.restation(&mut drafts, self.measure.metres(p));
+        if !self.all_fit(&drafts, p, share)
+            || !self.absorbed_fits(&absorbed, share)
+            || !self.star_is_clear(v, p, &drafts, None)
+        {
+            return false;
+        }
+        let Some(fused) = self.fusions(w, &drafts, |to| orient(p, to, q) > 0) else {
+            return false;
+        };
+        let gone: SmallVec<[u32; 6]> = self.star[v as usize].iter().copied().collect();
+        for &edge in &gone {
+            self.remove(edge);
+        }
+        for (edge, k, piece) in absorbed.stretched {
+            self.edges[edge as usize].pieces[k] = piece;
+        }
+        for (draft, fused) in drafts.into_iter().zip(fused) {
+            self.add_or_fuse(w, draft, fused);
+        }
+        for piece in absorbed.lost {
+            if !self.lodge(&piece, w, share) {
+                let reason = self.reason_for(piece.line);
+                self.drop_piece(&piece, reason);
+            }
+        }
+        true
+    }
+
+    /// Replaces an edge by two that meet in `bend`; returns the node there.
+    pub(super) fn bend(&mut self, edge: u32, bend: Bend, share: f64) -> Option<u32> {
+        let [a, b] = self.edges[edge as usize].ends;
+        let (a_at, b_at) = (self.point(a), self.point(b));
+        let (p, vacant) = match bend {
+            Bend::To(node) => (self.point(node), None),
+            Bend::At(p) => (p, Some(p)),
+        };
+        if p == a_at || p == b_at {
+            return None;
+        }
+        let (to_a, to_b) = self.split(edge, self.measure.metres(p));
+        let inside = self.edges[edge as usize].inside;
+        let drafts: Drafts = smallvec![
+            Draft {
+                to: a,
+                pieces: to_a,
+                inside: [inside[1], inside[0]],
+            },
+            Draft {
+                to: b,
+                pieces: to_b,
+                inside,
+            },
+        ];
+        let sweep = Sweep {
+            triangle: [a_at, b_at, p],
+            fresh: smallvec![(a_at, p), (p, b_at)],
+        };
+        let room = Room {
+            gone: &[edge],
+            mover: None,
+            vacant,
+        };
+        if !self.all_fit(&drafts, p, share) || !self.is_clear(&[sweep], &room) {
+            return None;
+        }
+        let fused = match bend {
+            Bend::At(_) => smallvec![None, None],
+            // seen along the new edge from p to one end, the old edge was on the side of the other
+            Bend::To(node) => self.fusions(node, &drafts, |to| {
+                let other = if to == a_at { b_at } else { a_at };
+                orient(p, to, other) > 0
+            })?,
+        };
+        self.remove(edge);
+        let node = match bend {
+            Bend::To(node) => node,
+            Bend::At(p) => self.add_node(p),
+        };
+        for (draft, fused) in drafts.into_iter().zip(fused) {
+            self.add_or_fuse(node, draft, fused);
+        }
+        Some(node)
+    }
+
+    /// Removes a node of degree two that all lines at it pass; returns the edge that replaces its
+    /// two. With `close`, that edge may fall onto one that is there.
+    pub(super) fn straighten(&mut self, v: u32, share: f64, close: bool) -> Option<u32> {
+        let (a, b, pieces) = self.passing(v)?;
+        let (p, q) = (self.point(a), self.point(b));
+        let chord = (self.metres(a), self.metres(b));
+        let fits = |piece| self.measure.fits(piece, chord.0, chord.1, share);
+        if (!close && self.find(a, b).is_some()) || !pieces.iter().all(fits) {
+            return None;
+        }
+        let [e, f] = [self.star[v as usize][0], self.star[v as usize][1]];
+        let leaving = if self.edges[e as usize].other(v) == b {
+            e
+        } else {
+            f
+        };
+        let draft = Draft {
+            to: b,
+            pieces,
+            inside: self.edges[leaving as usize].inside_from(v),
+        };
+        let at = self.point(v);
+        let sweep = Sweep {
+            triangle: [p, q, at],
+            fresh: smallvec![(p, q)],
+        };
+        let room = Room {
+            gone: &[e, f],
+            mover: Some(at),
+            vacant: None,
+        };
+        if !self.is_clear(&[sweep], &room) {
+            return None;
+        }
+        let on_left = orient(p, q, at) > 0;
+        let fused = self.fuse(a, &draft, on_left).ok()?;
+        self.remove(e);
+        self.remove(f);
+        Some(self.add_or_fuse(a, draft, fused))
+    }
+
+    /// A new node without edges.
+    pub(super) fn add_node(&mut self, p: Point) -> u32 {
+        self.at.push(p);
+        self.star.push(SmallVec::new());
+        self.at.len() as u32 - 1
+    }
+
+    /// The edges of `v` as drafts away from it.
+    fn drafts(&self, v: u32) -> Drafts {
+        let star = self.star[v as usize].iter();
+        star.map(|&edge| {
+            let edge = &self.edges[edge as usize];
+            Draft {
+                to: edge.other(v),
+                pieces: edge.pieces_from(v),
+                inside: edge.inside_from(v),
+            }
+        })
+        .collect()
+    }
+
+    fn all_fit(&self, drafts: &[Draft], from: Point, share: f64) -> bool {
+        let a = self.measure.metres(from);
+        drafts.iter().all(|draft| {
+            let b = self.metres(draft.to);
+            (draft.pieces.iter()).all(|piece| self.measure.fits(piece, a, b, share))
+        })
+    }
+
+    fn star_is_clear(&self, v: u32, p: Point, drafts: &[Draft], vacant: Option<Point>) -> bool {
+        let q = self.point(v);
+        let mut sweeps: SmallVec<[Sweep; 8]> = smallvec![Sweep {
+            triangle: [q, p, p],
+            fresh: smallvec![(q, p)],
+        }];
+        for draft in drafts {
+            let end = self.point(draft.to);
+            sweeps.push(Sweep {
+                triangle: [q, end, p],
+                fresh: smallvec![(p, end)],
+            });
+        }
+        let gone: SmallVec<[u32; 6]> = self.star[v as usize].iter().copied().collect();
+        let room = Room {
+            gone: &gone,
+            mover: Some(q),
+            vacant,
+        };
+        self.is_clear(&sweeps, &room)
+    }
+
+    /// For each draft at `node` the edge that takes it up; `None` if that may not be.
+    fn fusions(
+        &self,
+        node: u32,
+        drafts: &[Draft],
+        on_left: impl Fn(Point) -> bool,
+    ) -> Option<SmallVec<[Option<Fused>; 6]>> {
+        let fused = drafts.iter().map(|draft| {
+            let end = self.point(draft.to);
+            self.fuse(node, draft, on_left(end))
+        });
+        fused.collect::<Result<_, ()>>().ok()
+    }
+
+    fn reason_for(&self, line: u32) -> Reason {
+        let points = &self.measure.domain.lines[line as usize].points;
+        if points.first() == points.last() {
+            Reason::SmallLoop
+        } else {
+            Reason::ShortEnd
+        }
+    }
+}

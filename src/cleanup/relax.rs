@@ -1,0 +1,150 @@
+//! Pushes nodes and edges apart, with frozen topology, until edges and gaps have the length that
+//! the mesh wants, or the tolerance is used up.
+
+use crate::cleanup::graph::Graph;
+use crate::cleanup::importance::is_rim_corner;
+use crate::cleanup::measure::distance;
+use crate::cleanup::measure::to_segment;
+use crate::cleanup::separate::gap_m;
+use crate::geometry::point::Point;
+use crate::geometry::point::Xy;
+
+/// What is wanted, in shares of the local mesh size.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wanted {
+    /// Least length of an edge.
+    pub(super) edge: f64,
+    /// Least distance of a node from an edge that is not its own.
+    pub(super) gap: f64,
+    /// How much of the tolerance may be used.
+    pub(super) share: f64,
+    /// How often each node is looked at, at most.
+    pub(super) rounds: usize,
+}
+
+/// Share of the wanted push that is made at once: neighbours push too.
+const STEP: f64 = 0.6;
+/// Pushes below this share of the mesh size are not made.
+const STILL: f64 = 0.002;
+
+/// Moves nodes one after the other, in rounds over those that are pushed.
+pub(super) fn relax(graph: &mut Graph, wanted: &Wanted) {
+    let mut active: Vec<u32> = (0..graph.at.len() as u32).collect();
+    let mut found = Vec::new();
+    for _ in 0..wanted.rounds {
+        let mut again = Vec::new();
+        for &node in &active {
+            if graph.degree(node) == 0 || is_rim_corner(graph, node) {
+                continue;
+            }
+            let push = push_m(graph, wanted, node, &mut found);
+            let push = along_rim(graph, node, push);
+            let size = graph.size_at_m(node);
+            if push[0].hypot(push[1]) > STILL * size && pushed(graph, wanted, node, push) {
+                again.push(node);
+                again.extend(graph.neighbours(node));
+                again.extend(found.iter().flat_map(|&e| graph.edges[e as usize].ends));
+            }
+        }
+        again.retain(|&node| graph.degree(node) > 0);
+        again.sort_unstable();
+        again.dedup();
+        active = again;
+    }
+}
+
+/// Tries the whole step, then a half and a quarter.
+fn pushed(graph: &mut Graph, wanted: &Wanted, node: u32, push: Xy) -> bool {
+    let at = graph.metres(node);
+    let cell_m = graph.measure.grid().cell_m;
+    [STEP, STEP / 2.0, STEP / 4.0].iter().any(|step| {
+        let [x, y] = [at[0] + step * push[0], at[1] + step * push[1]];
+        let p = Point::new((x / cell_m).round() as i32, (y / cell_m).round() as i32);
+        graph.shift(node, p, wanted.share)
+    })
+}
+
+/// Where a node is pushed by all that is too near, metres. Leaves the edges around it in `found`.
+fn push_m(graph: &Graph, wanted: &Wanted, node: u32, found: &mut Vec<u32>) -> Xy {
+    let at = graph.metres(node);
+    let mut push = [0.0, 0.0];
+    let mut add = |by: Xy, length: f64| {
+        push[0] += by[0] * length;
+        push[1] += by[1] * length;
+    };
+    for &edge in &graph.star[node as usize] {
+        let it = &graph.edges[edge as usize];
+        let end = graph.metres(it.other(node));
+        let (length, wants) = (distance(at, end), wanted.edge * it.size_m);
+        if length < wants {
+            add(unit(end, at), 0.5 * (wants - length));
+        }
+    }
+    let reach = wanted.gap * graph.size_at_m(node) / graph.measure.grid().cell_m;
+    let p = graph.point(node);
+    graph.index.near(p, p, reach, found);
+    for &edge in found.iter() {
+        let wants = wanted.gap * graph.edges[edge as usize].size_m.min(graph.size_at_m(node));
+        if let Some(gap) = gap_m(graph, node, edge).filter(|&gap| gap < wants) {
+            let (a, b) = graph.ends_m(edge);
+            let t = to_segment(at, a, b).1;
+            add(unit(between(a, b, t), at), 0.5 * (wants - gap));
+        }
+    }
+    for &edge in &graph.star[node as usize] {
+        let ends = graph.edges[edge as usize].ends.map(|end| graph.point(end));
+        graph.index.near(ends[0], ends[1], reach, found);
+        let far = graph.metres(graph.edges[edge as usize].other(node));
+        let mut others: Vec<u32> = found
+            .iter()
+            .flat_map(|&e| graph.edges[e as usize].ends)
+            .collect();
+        others.sort_unstable();
+        others.dedup();
+        for other in others {
+            let wants = wanted.gap
+                * graph.edges[edge as usize]
+                    .size_m
+                    .min(graph.size_at_m(other));
+            if let Some(gap) = gap_m(graph, other, edge).filter(|&gap| gap < wants) {
+                let it = graph.metres(other);
+                let t = to_segment(it, at, far).1;
+                add(
+                    unit(it, between(at, far, t)),
+                    0.5 * (1.0 - t) * (wants - gap),
+                );
+            }
+        }
+    }
+    push
+}
+
+/// On the outline, only the part of a push along it.
+fn along_rim(graph: &Graph, node: u32, push: Xy) -> Xy {
+    let star = graph.star[node as usize].iter();
+    let rim: Vec<u32> = star
+        .copied()
+        .filter(|&e| graph.edges[e as usize].is_rim())
+        .collect();
+    let &[e, f] = rim.as_slice() else {
+        return push;
+    };
+    let [a, b] = [e, f].map(|edge| graph.metres(graph.edges[edge as usize].other(node)));
+    let way = unit(a, b);
+    let along = push[0] * way[0] + push[1] * way[1];
+    [way[0] * along, way[1] * along]
+}
+
+fn between(a: Xy, b: Xy, t: f64) -> Xy {
+    [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
+}
+
+/// The direction from `a` to `b`; none if they are equal.
+fn unit(a: Xy, b: Xy) -> Xy {
+    let length = distance(a, b);
+    if length > 0.0 {
+        [(b[0] - a[0]) / length, (b[1] - a[1]) / length]
+    } else {
+        [0.0, 0.0]
+    }
+}

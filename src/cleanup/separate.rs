@@ -1,0 +1,282 @@
+//! Closes what is too narrow for the mesh: short edges are contracted, nodes that nearly touch an
+//! edge are joined to it. The narrowest first, until nothing is left that may be closed.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use crate::cleanup::graph::Graph;
+use crate::cleanup::importance::Importance;
+use crate::cleanup::measure::distance;
+use crate::cleanup::measure::to_segment;
+use crate::cleanup::operate::Bend;
+use crate::geometry::point::Point;
+use crate::geometry::point::Xy;
+use crate::geometry::predicates::orient;
+
+/// What counts as too narrow, in shares of the local mesh size.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Narrow {
+    /// Edges shorter than this are contracted.
+    pub(super) edge: f64,
+    /// Nodes nearer than this to an edge that is not theirs are joined to it.
+    pub(super) gap: f64,
+    /// The same for ends of lines.
+    pub(super) end: f64,
+    /// How much of the tolerance may be used.
+    pub(super) share: f64,
+}
+
+/// A node too near to something.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Conflict {
+    /// Distance over what it should be, below one.
+    ratio: f64,
+    with: With,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum With {
+    /// The other end of one of its edges, too short.
+    Neighbour(u32),
+    /// An edge that is not its own.
+    Edge(u32),
+}
+
+type Queue = BinaryHeap<Reverse<(u64, Point, u32)>>;
+
+/// Closes all that is too narrow and may be closed.
+pub(super) fn separate(graph: &mut Graph, narrow: &Narrow) {
+    let mut queue = Queue::new();
+    for node in 0..graph.at.len() as u32 {
+        push(graph, narrow, node, &mut queue);
+    }
+    while let Some(Reverse((key, _, node))) = queue.pop() {
+        let conflicts = conflicts(graph, narrow, node);
+        let Some(first) = conflicts.first() else {
+            continue;
+        };
+        let now = first.ratio.to_bits();
+        if now > key {
+            queue.push(Reverse((now, graph.point(node), node)));
+            continue;
+        }
+        let resolved = (conflicts.iter()).find_map(|it| resolve(graph, narrow, node, it.with));
+        if let Some(centre) = resolved {
+            push_around(graph, narrow, centre, &mut queue);
+        }
+    }
+}
+
+fn push(graph: &Graph, narrow: &Narrow, node: u32, queue: &mut Queue) {
+    if let Some(first) = conflicts(graph, narrow, node).first() {
+        queue.push(Reverse((first.ratio.to_bits(), graph.point(node), node)));
+    }
+}
+
+/// Queues all nodes that a change at `centre` may have brought too near to something.
+fn push_around(graph: &Graph, narrow: &Narrow, centre: u32, queue: &mut Queue) {
+    push(graph, narrow, centre, queue);
+    let mut found = Vec::new();
+    for &edge in &graph.star[centre as usize] {
+        let ends = graph.edges[edge as usize].ends;
+        let [a, b] = ends.map(|node| graph.point(node));
+        let (a_m, b_m) = graph.ends_m(edge);
+        let reach = narrow.gap.max(narrow.end) * graph.edges[edge as usize].size_m;
+        graph
+            .index
+            .near(a, b, reach / graph.measure.grid().cell_m, &mut found);
+        let mut nodes: Vec<u32> = Vec::with_capacity(found.len());
+        for &near in &found {
+            let ends = graph.edges[near as usize].ends;
+            let close = |&node: &u32| to_segment(graph.metres(node), a_m, b_m).0 < reach;
+            nodes.extend(ends.into_iter().filter(close));
+        }
+        nodes.extend(ends);
+        nodes.sort_unstable();
+        nodes.dedup();
+        for node in nodes {
+            push(graph, narrow, node, queue);
+        }
+    }
+}
+
+/// All conflicts of a node, the narrowest first.
+fn conflicts(graph: &Graph, narrow: &Narrow, node: u32) -> Vec<Conflict> {
+    let mut conflicts = Vec::new();
+    if graph.degree(node) == 0 {
+        return conflicts;
+    }
+    let at = graph.metres(node);
+    let size = graph.size_at_m(node);
+    for &edge in &graph.star[node as usize] {
+        let other = graph.edges[edge as usize].other(node);
+        let limit = narrow.edge * graph.edges[edge as usize].size_m;
+        let length = distance(at, graph.metres(other));
+        if length < limit {
+            conflicts.push(Conflict {
+                ratio: length / limit,
+                with: With::Neighbour(other),
+            });
+        }
+    }
+    let share = if graph.degree(node) == 1 {
+        narrow.end
+    } else {
+        narrow.gap
+    };
+    let mut found = Vec::new();
+    let p = graph.point(node);
+    let reach = share * size / graph.measure.grid().cell_m;
+    graph.index.near(p, p, reach, &mut found);
+    for edge in found {
+        let limit = share * size.min(graph.edges[edge as usize].size_m);
+        if let Some(gap) = gap_m(graph, node, edge).filter(|&gap| gap < limit) {
+            conflicts.push(Conflict {
+                ratio: gap / limit,
+                with: With::Edge(edge),
+            });
+        }
+    }
+    conflicts.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
+    conflicts
+}
+
+/// Distance from a node to an edge that is not its own, if the domain lies between them; `None`
+/// also if the nearest place of the edge is a neighbour of the node.
+pub(super) fn gap_m(graph: &Graph, node: u32, edge: u32) -> Option<f64> {
+    let it = &graph.edges[edge as usize];
+    if it.ends.contains(&node) {
+        return None;
+    }
+    let [a, b] = it.ends.map(|end| graph.point(end));
+    let side = orient(a, b, graph.point(node));
+    if (side > 0 && !it.inside[0]) || (side < 0 && !it.inside[1]) {
+        return None;
+    }
+    let (a, b) = graph.ends_m(edge);
+    let (gap, t) = to_segment(graph.metres(node), a, b);
+    let end = if t <= 0.0 {
+        it.ends[0]
+    } else if t >= 1.0 {
+        it.ends[1]
+    } else {
+        return Some(gap);
+    };
+    graph.find(node, end).is_none().then_some(gap)
+}
+
+/// Closes one conflict; returns the node in the middle of what changed.
+fn resolve(graph: &mut Graph, narrow: &Narrow, node: u32, with: With) -> Option<u32> {
+    match with {
+        With::Neighbour(other) => unite(graph, node, other, narrow.share, "short-edge"),
+        With::Edge(edge) => join(graph, node, edge, narrow.edge, narrow.share),
+    }
+}
+
+/// Makes one node of two: the less important one moves, or else the other, or else both.
+pub(super) fn unite(
+    graph: &mut Graph,
+    u: u32,
+    v: u32,
+    share: f64,
+    what: &'static str,
+) -> Option<u32> {
+    let (keep, give) = if Importance::of(graph, u) < Importance::of(graph, v) {
+        (v, u)
+    } else {
+        (u, v)
+    };
+    let (at, moved) = (
+        graph.point(keep),
+        distance(graph.metres(u), graph.metres(v)),
+    );
+    if graph.merge(give, keep, share) {
+        graph.note(what, at, moved);
+        return Some(keep);
+    }
+    if graph.merge(keep, give, share) {
+        graph.note(what, graph.point(give), moved);
+        return Some(give);
+    }
+    let middle = middle(at, graph.point(give));
+    if graph.shift(keep, middle, share) {
+        if graph.merge(give, keep, share) {
+            graph.note(what, middle, 0.5 * moved);
+            return Some(keep);
+        }
+        graph.shift(keep, at, f64::INFINITY);
+    }
+    None
+}
+
+fn middle(a: Point, b: Point) -> Point {
+    let half = |u: i32, v: i32| ((i64::from(u) + i64::from(v)).div_euclid(2)) as i32;
+    Point::new(half(a.x, b.x), half(a.y, b.y))
+}
+
+/// Joins a node to an edge that passes it: with the nearer end if that is near, else the node moves
+/// to its foot, or the edge bends to the node, whichever is the less important.
+pub(super) fn join(graph: &mut Graph, node: u32, edge: u32, near: f64, share: f64) -> Option<u32> {
+    let it = &graph.edges[edge as usize];
+    let (ends, rank, size_m) = (it.ends, it.rank, it.size_m);
+    let (a, b) = graph.ends_m(edge);
+    let at = graph.metres(node);
+    let (gap, t) = to_segment(at, a, b);
+    let length = distance(a, b);
+    let (end, beside) = if t < 0.5 {
+        (ends[0], t * length)
+    } else {
+        (ends[1], (1.0 - t) * length)
+    };
+    let what = if graph.degree(node) == 1 {
+        "joined-end"
+    } else {
+        "closed-gap"
+    };
+    if beside < near * size_m
+        && let Some(united) = unite(graph, node, end, share, what)
+    {
+        return Some(united);
+    }
+    if t <= 0.0 || t >= 1.0 {
+        return None;
+    }
+    let moved = [graph.point(node)];
+    let bends = Importance::of(graph, node).rank > rank;
+    if bends && graph.bend(edge, Bend::To(node), share).is_some() {
+        graph.note(what, moved[0], gap);
+        return Some(node);
+    }
+    if let Some(landed) = land(
+        graph,
+        node,
+        edge,
+        [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])],
+        share,
+    ) {
+        graph.note(what, graph.point(landed), gap);
+        return Some(landed);
+    }
+    // a failed landing may have replaced the edge by an equal one
+    let edge = graph.find(ends[0], ends[1])?;
+    if !bends && graph.bend(edge, Bend::To(node), share).is_some() {
+        graph.note(what, moved[0], gap);
+        return Some(node);
+    }
+    None
+}
+
+/// Moves a node onto the place `foot` of an edge.
+fn land(graph: &mut Graph, node: u32, edge: u32, foot: Xy, share: f64) -> Option<u32> {
+    let cell_m = graph.measure.grid().cell_m;
+    let p = Point::new(
+        (foot[0] / cell_m).round() as i32,
+        (foot[1] / cell_m).round() as i32,
+    );
+    let there = graph.bend(edge, Bend::At(p), share)?;
+    if graph.merge(node, there, share) {
+        return Some(there);
+    }
+    graph.straighten(there, f64::INFINITY, false);
+    None
+}

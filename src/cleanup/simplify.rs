@@ -1,0 +1,150 @@
+//! Removes nodes that do not matter, the least deviation first.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use crate::cleanup::graph::Graph;
+use crate::cleanup::importance::turn_deg;
+use crate::cleanup::measure::to_segment;
+use crate::cleanup::wedges::angle_deg;
+use crate::geometry::point::Point;
+
+/// What simplification may do, in shares of the local mesh size.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Smooth {
+    /// How far lines may be from the edge that replaces two.
+    pub(super) deviation: f64,
+    /// The same where the way turns by more than [`CORNER_DEG`].
+    pub(super) at_corners: f64,
+    /// No node may come nearer than this to the new edge (unless it was as near before).
+    pub(super) gap: f64,
+    /// No angle at the ends of the new edge may fall below this, degrees.
+    pub(super) angle_deg: f64,
+    /// May the end of one line and the start of the next lose their node?
+    pub(super) over_ends: bool,
+}
+
+const CORNER_DEG: f64 = 30.0;
+
+/// Removes all nodes of degree two that `smooth` allows.
+pub(super) fn simplify(graph: &mut Graph, smooth: &Smooth) {
+    let mut queue = BinaryHeap::new();
+    for node in 0..graph.at.len() as u32 {
+        push(graph, smooth, node, &mut queue);
+    }
+    while let Some(Reverse((key, _, _, node))) = queue.pop() {
+        let Some(deviation) = deviation(graph, smooth, node) else {
+            continue;
+        };
+        if deviation.to_bits() > key {
+            push(graph, smooth, node, &mut queue);
+            continue;
+        }
+        if !keeps_distance(graph, smooth, node) || !keeps_angles(graph, smooth, node) {
+            continue;
+        }
+        let at = graph.point(node);
+        if let Some(edge) = graph.straighten(node, 1.0, false) {
+            graph.note(
+                "simplified",
+                at,
+                deviation * graph.edges[edge as usize].size_m,
+            );
+            for end in graph.edges[edge as usize].ends {
+                push(graph, smooth, end, &mut queue);
+            }
+        }
+    }
+}
+
+type Queue = BinaryHeap<Reverse<(u64, u32, Point, u32)>>;
+
+/// Ties (straight lines) are broken by a hash of the place: removal from one end would measure the
+/// growing edge again and again.
+fn push(graph: &Graph, smooth: &Smooth, node: u32, queue: &mut Queue) {
+    if let Some(deviation) = deviation(graph, smooth, node) {
+        let at = graph.point(node);
+        queue.push(Reverse((deviation.to_bits(), scatter(at), at, node)));
+    }
+}
+
+fn scatter(p: Point) -> u32 {
+    let mixed = (p.x as u32).wrapping_mul(0x9E37_79B1) ^ (p.y as u32).wrapping_mul(0x85EB_CA77);
+    (mixed ^ (mixed >> 15)).wrapping_mul(0xC2B2_AE35)
+}
+
+/// How far its lines would be from the edge without `node`, in mesh sizes; `None` if it must stay.
+fn deviation(graph: &Graph, smooth: &Smooth, node: u32) -> Option<f64> {
+    let star = &graph.star[node as usize];
+    if star.len() != 2 || (!smooth.over_ends && !graph.all_pass(node)) {
+        return None;
+    }
+    let (a, b, pieces) = graph.passing(node)?;
+    if a == b || graph.find(a, b).is_some() {
+        return None;
+    }
+    let size = graph.size_at_m(node);
+    let (p, q) = (graph.metres(a), graph.metres(b));
+    let own = to_segment(graph.metres(node), p, q).0;
+    let turns = turn_deg(graph, node, |_| true).is_some_and(|turn| turn > CORNER_DEG);
+    let limit = size
+        * if turns {
+            smooth.at_corners
+        } else {
+            smooth.deviation
+        };
+    if own > limit {
+        return None;
+    }
+    let mut worst = own;
+    for piece in &pieces {
+        worst = worst.max(graph.measure.deviation_m(piece, p, q));
+        if worst > limit {
+            return None;
+        }
+    }
+    Some(worst / size)
+}
+
+/// False if the new edge would come too near to a node, nearer than the old ones were.
+fn keeps_distance(graph: &Graph, smooth: &Smooth, node: u32) -> bool {
+    let near = graph.neighbours(node);
+    let (a, b) = (near[0], near[1]);
+    let [p, v, q] = [a, node, b].map(|it| graph.metres(it));
+    let limit = smooth.gap * graph.size_at_m(node);
+    let mut found = Vec::new();
+    let reach = limit / graph.measure.grid().cell_m;
+    graph
+        .index
+        .near(graph.point(a), graph.point(b), reach, &mut found);
+    found.iter().all(|&edge| {
+        graph.edges[edge as usize].ends.iter().all(|&it| {
+            if it == a || it == b || it == node {
+                return true;
+            }
+            let at = graph.metres(it);
+            let (gap, t) = to_segment(at, p, q);
+            gap >= limit
+                || t <= 0.0
+                || t >= 1.0
+                || gap >= to_segment(at, p, v).0.min(to_segment(at, v, q).0)
+        })
+    })
+}
+
+/// False if an angle at an end of the new edge would become too sharp, and sharper than before.
+fn keeps_angles(graph: &Graph, smooth: &Smooth, node: u32) -> bool {
+    let near = graph.neighbours(node);
+    [(near[0], near[1]), (near[1], near[0])]
+        .iter()
+        .all(|&(end, far)| {
+            graph
+                .neighbours(end)
+                .iter()
+                .filter(|&&it| it != node)
+                .all(|&it| {
+                    let fresh = angle_deg(graph, end, it, far);
+                    fresh >= smooth.angle_deg || fresh >= angle_deg(graph, end, it, node)
+                })
+        })
+}

@@ -1,0 +1,197 @@
+//! What becomes of the stretches of lines when an edge is split, contracted or joined to the next.
+
+use smallvec::SmallVec;
+
+use crate::cleanup::graph::Draft;
+use crate::cleanup::graph::Graph;
+use crate::cleanup::graph::Pieces;
+use crate::cleanup::graph::turned;
+use crate::cleanup::measure::distance;
+use crate::geometry::point::Xy;
+use crate::noding::arrangement::Piece;
+
+/// Least share of a stretch that is left to either half when it is split: a stretch of no length
+/// would lose its direction, and with it the side of a ring.
+const SHARE_LEFT: f64 = 0.05;
+
+/// Where the stretches of a contracted edge went, apart from those that a moving edge took up.
+#[derive(Debug, Default)]
+pub(super) struct Absorbed {
+    /// Pieces of standing edges that become longer: edge, index, the new piece (as stored).
+    pub(super) stretched: SmallVec<[(u32, usize, Piece); 2]>,
+    /// Lines that ended at both nodes.
+    pub(super) lost: Pieces,
+}
+
+impl Graph<'_> {
+    /// The pieces of `edge` on either side of the place nearest to `p`, both away from `p`.
+    pub(super) fn split(&self, edge: u32, p: Xy) -> (Pieces, Pieces) {
+        let mut halves = (Pieces::new(), Pieces::new());
+        for piece in &self.edges[edge as usize].pieces {
+            let (low, high) = (piece.from_m.min(piece.to_m), piece.from_m.max(piece.to_m));
+            let station = self.measure.nearest(piece.line, low, high, p);
+            let station = kept_inside(station, low, high);
+            let line = piece.line;
+            halves.0.push(Piece {
+                line,
+                from_m: station,
+                to_m: piece.from_m,
+            });
+            halves.1.push(Piece {
+                line,
+                from_m: station,
+                to_m: piece.to_m,
+            });
+        }
+        halves
+    }
+
+    /// Hands the stretches of the edge `v w` to those that continue them: to edges of `v`, which
+    /// move with it, or else to edges of `w`.
+    pub(super) fn absorb(&self, edge: u32, v: u32, w: u32, drafts: &mut [Draft]) -> Absorbed {
+        let mut absorbed = Absorbed::default();
+        for lost in self.edges[edge as usize].pieces_from(v) {
+            let mut moving = drafts.iter_mut().flat_map(|draft| draft.pieces.iter_mut());
+            if let Some(piece) = moving.find(|piece| continues(piece, &lost)) {
+                piece.from_m = lost.to_m;
+                continue;
+            }
+            match self.continuation(&turned(&lost), w, edge, &absorbed) {
+                Some(stretched) => absorbed.stretched.push(stretched),
+                None => absorbed.lost.push(lost),
+            }
+        }
+        absorbed
+    }
+
+    /// The piece at node `w` that goes on where `lost` (away from `w`) ends, made longer by it.
+    fn continuation(
+        &self,
+        lost: &Piece,
+        w: u32,
+        contracted: u32,
+        absorbed: &Absorbed,
+    ) -> Option<(u32, usize, Piece)> {
+        for &edge in self.star[w as usize]
+            .iter()
+            .filter(|&&edge| edge != contracted)
+        {
+            let starts_here = self.edges[edge as usize].ends[0] == w;
+            for (k, piece) in self.edges[edge as usize].pieces.iter().enumerate() {
+                let away = if starts_here { *piece } else { turned(piece) };
+                let taken = (absorbed.stretched.iter()).any(|&(e, i, _)| (e, i) == (edge, k));
+                if continues(&away, lost) && !taken {
+                    let longer = Piece {
+                        from_m: lost.to_m,
+                        ..away
+                    };
+                    let stored = if starts_here { longer } else { turned(&longer) };
+                    return Some((edge, k, stored));
+                }
+            }
+        }
+        None
+    }
+
+    /// True if all stretched pieces are within `share` of their tolerance.
+    pub(super) fn absorbed_fits(&self, absorbed: &Absorbed, share: f64) -> bool {
+        absorbed.stretched.iter().all(|(edge, _, piece)| {
+            let (a, b) = self.ends_m(*edge);
+            self.measure.fits(piece, a, b, share)
+        })
+    }
+
+    /// Finds a home for a stretch that lost its edge: the edge at `w` that it fits best. A line
+    /// much shorter than the mesh size lives on with its neighbours this way, if they are not much
+    /// longer themselves. False if there is none within tolerance.
+    pub(super) fn lodge(&mut self, lost: &Piece, w: u32, share: f64) -> bool {
+        let mut best: Option<(f64, u32, Piece)> = None;
+        let limit = share * self.measure.tolerance_m[lost.line as usize];
+        for &edge in &self.star[w as usize] {
+            let (a, b) = self.ends_m(edge);
+            for piece in [*lost, turned(lost)] {
+                let away = self.measure.deviation_m(&piece, a, b);
+                if away <= limit && best.is_none_or(|(least, ..)| away < least) {
+                    best = Some((away, edge, piece));
+                }
+            }
+        }
+        if let Some((_, edge, piece)) = best {
+            self.edges[edge as usize].pieces.push(piece);
+        }
+        best.is_some()
+    }
+
+    /// Lines that pass the moving node get there at the station nearest to its new place `p`.
+    pub(super) fn restation(&self, drafts: &mut [Draft], p: Xy) {
+        for i in 0..drafts.len() {
+            for j in i + 1..drafts.len() {
+                let (head, tail) = drafts.split_at_mut(j);
+                for one in &mut head[i].pieces {
+                    let Some(other) = tail[0].pieces.iter_mut().find(|it| continues(it, one))
+                    else {
+                        continue;
+                    };
+                    let (low, high) = (one.to_m.min(other.to_m), one.to_m.max(other.to_m));
+                    let line = one.line;
+                    let away = 3.0 * distance(self.measure.point(line, one.from_m), p);
+                    let (from, to) = ((one.from_m - away).max(low), (one.from_m + away).min(high));
+                    let station = self.measure.nearest(line, from, to, p);
+                    one.from_m = kept_inside(station, low, high);
+                    other.from_m = one.from_m;
+                }
+            }
+        }
+    }
+
+    /// The neighbours `a`, `b` of a node of degree two and the pieces from `a` to `b`: lines that
+    /// pass the node are joined; a line that ends there keeps its stretch.
+    pub(super) fn passing(&self, v: u32) -> Option<(u32, u32, Pieces)> {
+        let &[e, f] = self.star[v as usize].as_slice() else {
+            return None;
+        };
+        let (a, b) = (
+            self.edges[e as usize].other(v),
+            self.edges[f as usize].other(v),
+        );
+        let mut rest = self.edges[f as usize].pieces_from(v);
+        let mut joined = Pieces::new();
+        for piece in self.edges[e as usize].pieces_from(v) {
+            let next = rest.iter().position(|it| continues(it, &piece));
+            let to_m = next.map_or(piece.from_m, |k| rest.remove(k).to_m);
+            joined.push(Piece {
+                line: piece.line,
+                from_m: piece.to_m,
+                to_m,
+            });
+        }
+        joined.extend(rest);
+        Some((a, b, joined))
+    }
+
+    /// True if every line at a node of degree two passes it.
+    pub(super) fn all_pass(&self, v: u32) -> bool {
+        let &[e, f] = self.star[v as usize].as_slice() else {
+            return false;
+        };
+        let from = self.edges[e as usize].pieces_from(v);
+        let mut rest = self.edges[f as usize].pieces_from(v);
+        from.len() == rest.len()
+            && from.iter().all(|piece| {
+                let next = rest.iter().position(|it| continues(it, piece));
+                next.map(|k| rest.remove(k)).is_some()
+            })
+    }
+}
+
+/// True if the pieces, both away from one node, are the two halves of one line that passes there.
+fn continues(piece: &Piece, other: &Piece) -> bool {
+    piece.line == other.line
+        && piece.from_m == other.from_m
+        && (piece.to_m > piece.from_m) != (other.to_m > other.from_m)
+}
+
+fn kept_inside(station: f64, low: f64, high: f64) -> f64 {
+    let left = SHARE_LEFT * (high - low);
+    station.clamp(low + left, high - left)
+}

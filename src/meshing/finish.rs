@@ -1,0 +1,93 @@
+//! Draft -> Patch: clean-up and smoothing, one node a place again, and the promises checked.
+
+use crate::meshing::check::check;
+use crate::meshing::draft::Draft;
+use crate::meshing::improve::Cleaner;
+use crate::meshing::improve::Pass;
+use crate::meshing::kernel::Kernel;
+use crate::meshing::patch::Loops;
+use crate::meshing::patch::Patch;
+use crate::meshing::smooth::OPEN;
+use crate::meshing::smooth::PERFECT;
+use crate::meshing::smooth::smooth_all;
+use crate::meshing::smooth::wish;
+use crate::meshing::triangulate::NONE;
+use crate::meshing::visits::Visits;
+
+/// How much work the finish does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Effort {
+    /// As it is: only the promises are checked.
+    Check,
+    /// Smoothing only.
+    Smooth,
+    /// Clean-up and smoothing.
+    Clean,
+}
+
+/// Finishes a draft; `None` if the result would break a promise.
+pub(crate) fn finish(
+    mut draft: Draft,
+    visits: &Visits,
+    loops: &Loops,
+    effort: Effort,
+) -> Option<Patch> {
+    if effort != Effort::Check {
+        improve(&mut draft, loops.size_m, effort);
+    }
+    let patch = merge_visits(draft, visits, loops);
+    check(loops, &patch).is_ok().then_some(patch)
+}
+
+/// Works on all quads that are not settled.
+pub(crate) fn improve(draft: &mut Draft, size_m: f64, effort: Effort) {
+    let mut kernel = Kernel::of(draft);
+    wish(&mut kernel, size_m);
+    let mut cleaner = Cleaner::new(kernel);
+    if effort == Effort::Clean {
+        smooth(&mut cleaner, 4, 6);
+        cleaner.run(Pass::Valence, 6);
+        cleaner.run(Pass::Rescue(0.35), 3);
+        smooth(&mut cleaner, 4, 10);
+        cleaner.forget();
+        cleaner.run(Pass::Valence, 3);
+        cleaner.run(Pass::Rescue(0.4), 3);
+        for _ in 0..2 {
+            smooth(&mut cleaner, 2, 8);
+            cleaner.forget();
+            let kept = cleaner.run(Pass::Energy, 1) + cleaner.run(Pass::Valence, 2);
+            if kept == 0 {
+                break;
+            }
+        }
+        cleaner.run(Pass::Rescue(0.4), 3);
+    }
+    smooth(&mut cleaner, 6, 30);
+    cleaner.kernel.store(draft);
+}
+
+fn smooth(cleaner: &mut Cleaner, open: usize, perfect: usize) {
+    smooth_all(&mut cleaner.kernel, OPEN, open);
+    smooth_all(&mut cleaner.kernel, PERFECT, perfect);
+}
+
+/// Visits at one place become one node; unused nodes go.
+fn merge_visits(draft: Draft, visits: &Visits, loops: &Loops) -> Patch {
+    let mut number = vec![NONE; draft.nodes.len()];
+    number[..draft.visits].copy_from_slice(&visits.unique);
+    let mut nodes = loops.nodes.clone();
+    let mut quads = draft.quads;
+    for node in quads.iter_mut().flatten() {
+        let old = *node as usize;
+        if number[old] == NONE {
+            number[old] = nodes.len() as u32;
+            nodes.push(draft.nodes[old]);
+        }
+        *node = number[old];
+    }
+    Patch {
+        nodes,
+        quads,
+        method: draft.method,
+    }
+}

@@ -1,0 +1,363 @@
+//! The working mesh of the finish: quads with their neighbours, and one kind of edit.
+//!
+//! A *side* is a quad and one of its four edges: `quad * 4 + corner`, from that corner to the next.
+//! Every edit takes out some quads (the cavity) and puts others with the same outline in their
+//! place; the same call with the two lists exchanged undoes it. Half-edge structures usually offer
+//! a dozen operations; one that rebuilds at most a dozen quads is fast enough and cannot leave half
+//! an edit behind.
+
+use crate::geometry::point::Xy;
+use crate::meshing::draft::Draft;
+use crate::meshing::triangulate::NONE;
+use smallvec::SmallVec;
+
+/// A short list of quads or nodes: an edit rarely touches more than eight.
+pub(crate) type Few<T> = SmallVec<[T; 12]>;
+
+/// The part of a draft that is worked on (all but its settled quads).
+pub(crate) struct Kernel {
+    /// Positions, metres.
+    pub nodes: Vec<Xy>,
+    /// Node -> node of the draft; [`NONE`] for one made here.
+    pub origin: Vec<u32>,
+    /// True on the outline (a walk, or the border to settled quads): such a node never moves and
+    /// its edges on the outline stay.
+    pub held: Vec<bool>,
+    /// How many quads each node should have: 4 inside, angle / 90 degrees on the outline.
+    pub ideal: Vec<f32>,
+    /// How many quads each node has; 0 if it is gone.
+    pub valence: Vec<u32>,
+    /// One side that starts at the node; on the outline the one that lies on it, from which a
+    /// counter-clockwise turn meets all quads of the node.
+    pub spoke: Vec<u32>,
+    /// 1 / (wished edge length)^2 around each node, 1 / m2; set by `smooth::wish`.
+    pub scale: Vec<f64>,
+    /// Corners, counter-clockwise; all [`NONE`] if the quad is gone.
+    pub quads: Vec<[u32; 4]>,
+    /// The same edge in the neighbour; [`NONE`] on the outline.
+    pub twins: Vec<[u32; 4]>,
+    /// Slots of quads that are gone.
+    vacant: Vec<u32>,
+}
+
+/// The quad of a side.
+pub(crate) fn quad_of(side: u32) -> u32 {
+    side >> 2
+}
+
+/// The side after `side` in its quad.
+pub(crate) fn after(side: u32) -> u32 {
+    (side & !3) | ((side + 1) & 3)
+}
+
+/// The side before `side` in its quad.
+pub(crate) fn before(side: u32) -> u32 {
+    (side & !3) | ((side + 3) & 3)
+}
+
+impl Kernel {
+    /// Reads `draft.quads[draft.settled..]`. A node where the outline touches itself becomes one
+    /// node a sector.
+    pub fn of(draft: &Draft) -> Kernel {
+        let zone = &draft.quads[draft.settled..];
+        let mut local = vec![NONE; draft.nodes.len()];
+        let mut kernel = Kernel {
+            nodes: Vec::new(),
+            origin: Vec::new(),
+            held: Vec::new(),
+            ideal: Vec::new(),
+            valence: Vec::new(),
+            spoke: Vec::new(),
+            scale: Vec::new(),
+            quads: Vec::with_capacity(zone.len()),
+            twins: vec![[NONE; 4]; zone.len()],
+            vacant: Vec::new(),
+        };
+        for quad in zone {
+            let corners = quad.map(|node| {
+                if local[node as usize] == NONE {
+                    local[node as usize] = kernel.add_node(draft.nodes[node as usize], node);
+                }
+                local[node as usize]
+            });
+            kernel.quads.push(corners);
+        }
+        kernel.find_twins();
+        kernel.find_spokes();
+        kernel
+    }
+
+    /// A node without quads.
+    pub fn add_node(&mut self, at: Xy, origin: u32) -> u32 {
+        self.nodes.push(at);
+        self.origin.push(origin);
+        self.held.push(false);
+        self.ideal.push(4.0);
+        self.valence.push(0);
+        self.spoke.push(NONE);
+        self.scale.push(1.0);
+        self.nodes.len() as u32 - 1
+    }
+
+    /// Undoes the last [`add_node`](Kernel::add_node); the node must have no quads.
+    pub fn drop_last_node(&mut self) {
+        debug_assert_eq!(self.valence.last(), Some(&0));
+        self.nodes.pop();
+        self.origin.pop();
+        self.held.pop();
+        self.ideal.pop();
+        self.valence.pop();
+        self.spoke.pop();
+        self.scale.pop();
+    }
+
+    /// Puts the quads and positions back into the draft.
+    pub fn store(&self, draft: &mut Draft) {
+        draft.quads.truncate(draft.settled);
+        let mut number = self.origin.clone();
+        for node in 0..self.nodes.len() {
+            if number[node] != NONE {
+                draft.nodes[number[node] as usize] = self.nodes[node];
+            } else if self.valence[node] > 0 {
+                number[node] = draft.nodes.len() as u32;
+                draft.nodes.push(self.nodes[node]);
+            }
+        }
+        let alive = self.quads.iter().filter(|quad| quad[0] != NONE);
+        draft
+            .quads
+            .extend(alive.map(|quad| quad.map(|node| number[node as usize])));
+    }
+
+    fn find_twins(&mut self) {
+        let mut edges: Vec<(u64, u32)> = Vec::with_capacity(4 * self.quads.len());
+        for side in 0..4 * self.quads.len() as u32 {
+            let (a, b) = (self.start(side), self.end(side));
+            edges.push((u64::from(a.min(b)) << 32 | u64::from(a.max(b)), side));
+        }
+        edges.sort_unstable();
+        for pair in edges.windows(2) {
+            if pair[0].0 == pair[1].0 {
+                self.set_twin(pair[0].1, pair[1].1);
+                self.set_twin(pair[1].1, pair[0].1);
+            }
+        }
+    }
+
+    fn find_spokes(&mut self) {
+        for side in 0..4 * self.quads.len() as u32 {
+            let node = self.start(side) as usize;
+            self.valence[node] += 1;
+            if self.spoke[node] == NONE {
+                self.spoke[node] = side;
+            }
+        }
+        for side in 0..4 * self.quads.len() as u32 {
+            if self.twin(side) != NONE {
+                continue;
+            }
+            let mut node = self.start(side);
+            if self.held[node as usize] {
+                // A second sector at the same place.
+                node = self.add_node(self.nodes[node as usize], self.origin[node as usize]);
+            }
+            self.claim_sector(side, node);
+        }
+    }
+
+    /// Makes `node` the node of the sector that begins with the outline side `first`.
+    fn claim_sector(&mut self, first: u32, node: u32) {
+        let old = self.start(first);
+        let mut side = first;
+        let mut count = 0;
+        let incoming = loop {
+            self.quads[quad_of(side) as usize][(side & 3) as usize] = node;
+            count += 1;
+            let incoming = before(side);
+            if self.twin(incoming) == NONE {
+                break incoming;
+            }
+            side = self.twin(incoming);
+        };
+        if old != node {
+            self.valence[old as usize] -= count;
+        }
+        let [at, next, previous] =
+            [node, self.end(first), self.start(incoming)].map(|node| self.nodes[node as usize]);
+        let node = node as usize;
+        self.valence[node] = count;
+        self.spoke[node] = first;
+        self.held[node] = true;
+        self.ideal[node] = (turn_rad(at, next, previous) / std::f64::consts::FRAC_PI_2) as f32;
+    }
+
+    /// The node where `side` starts.
+    pub fn start(&self, side: u32) -> u32 {
+        self.quads[quad_of(side) as usize][(side & 3) as usize]
+    }
+
+    /// The node where `side` ends.
+    pub fn end(&self, side: u32) -> u32 {
+        self.start(after(side))
+    }
+
+    /// The same edge from the other side, or [`NONE`].
+    pub fn twin(&self, side: u32) -> u32 {
+        self.twins[quad_of(side) as usize][(side & 3) as usize]
+    }
+
+    fn set_twin(&mut self, side: u32, twin: u32) {
+        self.twins[quad_of(side) as usize][(side & 3) as usize] = twin;
+    }
+
+    /// The sides that start at `node`, counter-clockwise.
+    pub fn spokes(&self, node: u32) -> Few<u32> {
+        let first = self.spoke[node as usize];
+        let mut spokes = Few::new();
+        let mut side = first;
+        while side != NONE {
+            spokes.push(side);
+            side = self.twin(before(side));
+            if side == first {
+                break;
+            }
+        }
+        spokes
+    }
+
+    /// Positions of the corners of `quad`.
+    pub fn corners(&self, quad: u32) -> [Xy; 4] {
+        self.quads[quad as usize].map(|node| self.nodes[node as usize])
+    }
+
+    /// Scaled Jacobian of `quad`. Asked for so often that `geometry::quad` (with its `hypot`) is
+    /// too slow here; the two agree to rounding.
+    pub fn quality(&self, quad: u32) -> f64 {
+        let p = self.corners(quad);
+        let edge = |k: usize| {
+            let (a, b) = (p[k], p[(k + 1) & 3]);
+            [b[0] - a[0], b[1] - a[1]]
+        };
+        let edges = [edge(0), edge(1), edge(2), edge(3)];
+        let square = |e: Xy| e[0] * e[0] + e[1] * e[1];
+        let squares = edges.map(square);
+        let mut least = 1.0_f64;
+        for k in 0..4 {
+            let last = (k + 3) & 3;
+            let jacobian = edges[last][0] * edges[k][1] - edges[last][1] * edges[k][0];
+            let scale = squares[k] * squares[last];
+            least = least.min(if scale > 0.0 { jacobian / scale.sqrt() } else { 0.0 });
+        }
+        least
+    }
+
+    /// True if the slot holds a quad.
+    pub fn lives(&self, quad: u32) -> bool {
+        self.quads[quad as usize][0] != NONE
+    }
+
+    /// Replaces the quads `old` by quads with the corners `new` and returns their slots, or `None`,
+    /// and nothing is changed, if the outlines of the two do not fit.
+    pub fn replace(&mut self, old: &[u32], new: &[[u32; 4]]) -> Option<Few<u32>> {
+        let outline = self.outline(old)?;
+        let partners = partners(new, &outline)?;
+        for &quad in old {
+            for node in self.quads[quad as usize] {
+                self.valence[node as usize] -= 1;
+            }
+            self.quads[quad as usize] = [NONE; 4];
+        }
+        self.vacant.extend(old.iter().rev());
+        let slots: Few<u32> = new.iter().map(|&corners| self.put(corners)).collect();
+        for (k, &partner) in partners.iter().enumerate() {
+            let side = slots[k / 4] * 4 + k as u32 % 4;
+            let twin = match partner {
+                Partner::Inside(other) => slots[other / 4] * 4 + other as u32 % 4,
+                Partner::Outside(twin) => twin,
+            };
+            self.set_twin(side, twin);
+            if let Partner::Outside(twin) = partner
+                && twin != NONE
+            {
+                self.set_twin(twin, side);
+            }
+        }
+        for side in slots.iter().flat_map(|&slot| 4 * slot..4 * slot + 4) {
+            let node = self.start(side) as usize;
+            if !self.held[node] || self.twin(side) == NONE {
+                self.spoke[node] = side;
+            }
+        }
+        Some(slots)
+    }
+
+    fn put(&mut self, corners: [u32; 4]) -> u32 {
+        for node in corners {
+            self.valence[node as usize] += 1;
+        }
+        let slot = self.vacant.pop().unwrap_or_else(|| {
+            self.quads.push([NONE; 4]);
+            self.twins.push([NONE; 4]);
+            self.quads.len() as u32 - 1
+        });
+        self.quads[slot as usize] = corners;
+        slot
+    }
+
+    /// The outer edges of some quads: start, end, twin. `None` if one occurs twice.
+    fn outline(&self, cavity: &[u32]) -> Option<Few<(u32, u32, u32)>> {
+        let mut outline: Few<(u32, u32, u32)> = Few::new();
+        for side in cavity.iter().flat_map(|&quad| 4 * quad..4 * quad + 4) {
+            let twin = self.twin(side);
+            if twin == NONE || !cavity.contains(&quad_of(twin)) {
+                let (start, end) = (self.start(side), self.end(side));
+                if outline.iter().any(|edge| (edge.0, edge.1) == (start, end)) {
+                    return None;
+                }
+                outline.push((start, end, twin));
+            }
+        }
+        Some(outline)
+    }
+}
+
+/// Where the other side of an edge of a new quad is.
+#[derive(Clone, Copy)]
+enum Partner {
+    /// Another new quad's edge, `quad * 4 + corner` in the list of new quads.
+    Inside(usize),
+    /// An edge of the outline, with the twin beyond it.
+    Outside(u32),
+}
+
+/// Finds the partner of every edge of the new quads; `None` unless their outline is `outline`.
+fn partners(new: &[[u32; 4]], outline: &[(u32, u32, u32)]) -> Option<Few<Partner>> {
+    let edge = |k: usize| (new[k / 4][k % 4], new[k / 4][(k + 1) % 4]);
+    let mut partners = Few::new();
+    let mut outer = 0;
+    for k in 0..4 * new.len() {
+        let (start, end) = edge(k);
+        let mut inside = (0..4 * new.len()).filter(|&j| edge(j) == (end, start));
+        let outside = outline.iter().find(|&&(a, b, _)| (a, b) == (start, end));
+        match (inside.next(), inside.next(), outside) {
+            (Some(other), None, None) => partners.push(Partner::Inside(other)),
+            (None, None, Some(&(_, _, twin))) => {
+                partners.push(Partner::Outside(twin));
+                outer += 1;
+            }
+            _ => return None,
+        }
+    }
+    (outer == outline.len()).then_some(partners)
+}
+
+/// The angle from `next` counter-clockwise to `previous`, seen from `at`, in (0, 2 pi].
+fn turn_rad(at: Xy, next: Xy, previous: Xy) -> f64 {
+    let toward = |p: Xy| (p[1] - at[1]).atan2(p[0] - at[0]);
+    let turn = toward(previous) - toward(next);
+    if turn <= 0.0 {
+        turn + std::f64::consts::TAU
+    } else {
+        turn
+    }
+}

@@ -1,0 +1,109 @@
+//! The hot pixels that a tile owns, and the segments that pass through each.
+
+use crate::domain::line::Domain;
+use crate::geometry::crossing::crossing;
+use crate::geometry::crossing::passes_pixel;
+use crate::geometry::point::Point;
+use crate::geometry::window::Window;
+use crate::noding::tile::Segment;
+use crate::noding::tile::Tile;
+use crate::noding::tile::rows;
+use rstar::AABB;
+use rstar::RTree;
+use rstar::RTreeObject;
+
+/// What noding found in one tile.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TileNodes {
+    /// Centres of the hot pixels that the tile owns, sorted.
+    pub points: Vec<Point>,
+    /// All (segment, index into `points`) such that the segment passes through the hot pixel; by
+    /// point.
+    pub incidences: Vec<(Segment, u32)>,
+}
+
+/// A segment in the R-tree: its box is cut to the tile, so that long segments do not answer
+/// queries far away from them; its ends are not.
+struct Passing {
+    index: u32,
+    a: Point,
+    b: Point,
+    low: [i32; 2],
+    high: [i32; 2],
+}
+
+impl RTreeObject for Passing {
+    type Envelope = AABB<[i32; 2]>;
+
+    fn envelope(&self) -> AABB<[i32; 2]> {
+        AABB::from_corners(self.low, self.high)
+    }
+}
+
+/// Nodes of one tile. Depends on the segments that pass the tile's own pixels, on nothing else.
+pub fn node_tile(domain: &Domain, tile: &Tile) -> TileNodes {
+    let tree = RTree::bulk_load(passing(domain, tile));
+    let mut points = crossings(&tree, tile.window);
+    for passing in &tree {
+        for p in [passing.a, passing.b] {
+            if tile.window.owns(p) {
+                points.push(p);
+            }
+        }
+    }
+    points.sort_unstable();
+    points.dedup();
+    let mut incidences = Vec::with_capacity(points.len() * 3);
+    let mut here = Vec::new();
+    for (node, &p) in points.iter().enumerate() {
+        here.clear();
+        for passing in tree.locate_in_envelope_intersecting(AABB::from_point([p.x, p.y])) {
+            if passes_pixel(passing.a, passing.b, p) {
+                here.push(passing.index);
+            }
+        }
+        here.sort_unstable();
+        let of = |&index: &u32| (tile.segments[index as usize], node as u32);
+        incidences.extend(here.iter().map(of));
+    }
+    TileNodes { points, incidences }
+}
+
+fn passing(domain: &Domain, tile: &Tile) -> Vec<Passing> {
+    let window = tile.window;
+    let mut all = Vec::with_capacity(tile.segments.len());
+    for (index, segment) in tile.segments.iter().enumerate() {
+        let (a, b) = segment.ends(domain);
+        let x_low = a.x.min(b.x).max(window.min.x);
+        let x_high = a.x.max(b.x).min(window.max.x - 1);
+        let (y_low, y_high) = rows(a, b, x_low, x_high);
+        let (y_low, y_high) = (y_low.max(window.min.y), y_high.min(window.max.y - 1));
+        // `tiles` is generous by a few cells: some segments only come near
+        if x_low <= x_high && y_low <= y_high {
+            all.push(Passing {
+                index: index as u32,
+                a,
+                b,
+                low: [x_low, y_low],
+                high: [x_high, y_high],
+            });
+        }
+    }
+    all
+}
+
+/// Rounded crossings of all pairs that the window owns, with repetitions.
+fn crossings(tree: &RTree<Passing>, window: Window) -> Vec<Point> {
+    let mut found = Vec::new();
+    for s in tree {
+        for t in tree.locate_in_envelope_intersecting(s.envelope()) {
+            if s.index < t.index
+                && let Some(p) = crossing(s.a, s.b, t.a, t.b)
+                && window.owns(p)
+            {
+                found.push(p);
+            }
+        }
+    }
+    found
+}

@@ -1,0 +1,80 @@
+//! Hot pixels of all tiles -> edges and pieces.
+
+use crate::domain::line::Domain;
+use crate::geometry::crossing::along;
+use crate::geometry::point::Point;
+use crate::noding::arrangement::Arrangement;
+use crate::noding::arrangement::Piece;
+use crate::noding::hot::TileNodes;
+use crate::noding::tile::Segment;
+
+/// A node on a segment; sorted, the nodes of each segment follow each other along it.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Stop {
+    segment: Segment,
+    /// As in [`along`], cells². Different pixels that one segment passes never tie: on the way
+    /// both coordinates change in one direction only.
+    along: i64,
+    node: u32,
+}
+
+/// The arrangement of the nodes of all tiles, in whatever order they come.
+pub fn stitch(domain: &Domain, tiles: Vec<TileNodes>) -> Arrangement {
+    let mut points: Vec<Point> = Vec::with_capacity(tiles.iter().map(|t| t.points.len()).sum());
+    let mut stops = Vec::with_capacity(tiles.iter().map(|t| t.incidences.len()).sum());
+    for tile in tiles {
+        let first = points.len() as u32;
+        for (segment, node) in tile.incidences {
+            let (a, b) = segment.ends(domain);
+            stops.push(Stop {
+                segment,
+                along: along(a, b, tile.points[node as usize]),
+                node: first + node,
+            });
+        }
+        points.extend(tile.points);
+    }
+    stops.sort_unstable();
+    Arrangement::from_stretches(&points, stretches(domain, &stops))
+}
+
+/// One stretch from each stop of a segment to the next.
+fn stretches(domain: &Domain, stops: &[Stop]) -> Vec<([u32; 2], Option<Piece>)> {
+    let mut made = Vec::with_capacity(stops.len());
+    let mut at_m = Vec::new();
+    for of_line in stops.chunk_by(|s, t| s.segment.line == t.segment.line) {
+        let line = of_line[0].segment.line;
+        let stations = domain.stations_m(line);
+        for of_segment in of_line.chunk_by(|s, t| s.segment == t.segment) {
+            stations_of(domain, &stations, of_segment, &mut at_m);
+            for (pair, at_m) in of_segment.windows(2).zip(at_m.windows(2)) {
+                let (from_m, to_m) = (at_m[0], at_m[1]);
+                let piece = Piece { line, from_m, to_m };
+                made.push(([pair[0].node, pair[1].node], Some(piece)));
+            }
+        }
+    }
+    made
+}
+
+/// Stations of the feet of all stops of one segment: exactly a vertex's own at the ends, and
+/// strictly growing, since they tell the direction of a piece. Feet of neighbouring pixels on a
+/// steep segment of 100 km may be closer than two floats are; those move apart by the last bit.
+fn stations_of(domain: &Domain, stations: &[f64], stops: &[Stop], at_m: &mut Vec<f64>) {
+    let (a, b) = stops[0].segment.ends(domain);
+    let at = stops[0].segment.at as usize;
+    let (start_m, end_m) = (stations[at], stations[at + 1]);
+    let length2 = a.distance2(b) as f64;
+    at_m.clear();
+    for stop in stops {
+        let foot_m = start_m + stop.along as f64 / length2 * (end_m - start_m);
+        at_m.push(match at_m.last() {
+            Some(before_m) => foot_m.max(before_m.next_up()),
+            None => start_m,
+        });
+    }
+    *at_m.last_mut().expect("a segment passes its own ends") = end_m;
+    for i in (1..at_m.len() - 1).rev() {
+        at_m[i] = at_m[i].min(at_m[i + 1].next_down());
+    }
+}
