@@ -2,7 +2,7 @@
 
 use crate::domain::line::Domain;
 use crate::noding::arrangement::Arrangement;
-use crate::partition::rim::rim_side;
+use crate::noding::rim::rim_side;
 use crate::partition::star::HalfEdge;
 use crate::partition::star::Stars;
 use crate::partition::star::direction;

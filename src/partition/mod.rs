@@ -44,7 +44,6 @@ mod assemble;
 mod chain;
 mod locate;
 mod nest;
-mod rim;
 mod star;
 mod walk;
 

@@ -86,14 +86,16 @@ pub(super) fn best_end(
     best
 }
 
-/// True if a line of the raster across ours passes the end piece at less than a pitch: seams on it
-/// would be too near.
+/// True if a line of the raster across ours passes the end piece or less than a pitch before it:
+/// seams on it would be too near. Not close to the wall node, where the wall keeps them off.
 fn is_near_crossing(walls: &Walls, on: LatticeLine, k: i64, wall: Point, step: i64) -> bool {
     let pitch = i64::from(walls.pitch);
     let (_, along) = on.along.split(wall);
-    let low = along.min(k * pitch) - pitch;
-    let high = along.max(k * pitch) + pitch;
-    low.div_euclid(step * pitch) != high.div_euclid(step * pitch)
+    let ahead = if along > k * pitch { 1 } else { -1 };
+    let from = (k - ahead) * pitch;
+    let to = along - ahead * pitch * 7 / 10;
+    let side_of = |at: i64| at.div_euclid(step * pitch);
+    side_of(from) != side_of(to)
 }
 
 /// Nodes and places on edges within the length of an end piece from `from`.

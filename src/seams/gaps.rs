@@ -126,3 +126,96 @@ fn block(walls: &Walls, edge: u32, along: Along, step: i64, blocked: &mut Vec<Bl
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::CLEAR;
+    use super::gaps;
+    use crate::domain::line::Domain;
+    use crate::domain::line::Line;
+    use crate::domain::line::Role;
+    use crate::geometry::grid::Grid;
+    use crate::geometry::point::Point;
+    use crate::noding;
+    use crate::partition;
+    use crate::partition::partition;
+    use crate::seams::clearance::distance_between;
+    use crate::seams::raster::Along;
+    use crate::seams::raster::LatticeLine;
+    use crate::seams::walls::Walls;
+    use proptest::prelude::*;
+
+    const PITCH: i32 = 100;
+
+    fn domain(slits: &[[Point; 2]]) -> Domain {
+        let line = |role, points: &[Point]| Line {
+            source: 0,
+            role,
+            kind: 0,
+            name: String::new(),
+            points: points.to_vec(),
+        };
+        let rim = [(0, 0), (30, 3), (27, 35), (-4, 28), (0, 0)]
+            .map(|(x, y)| Point::new(x * PITCH, y * PITCH));
+        let slits = slits.iter().map(|slit| line(Role::Constraint, slit));
+        let grid = Grid {
+            origin_m: [0.0, 0.0],
+            cell_m: 1.0,
+        };
+        Domain {
+            grid,
+            epsg: None,
+            kinds: vec![String::new()],
+            lines: [line(Role::Boundary, &rim)]
+                .into_iter()
+                .chain(slits)
+                .collect(),
+            digest: 0,
+        }
+    }
+
+    fn point() -> impl Strategy<Value = Point> {
+        (0..2700, 300..2800).prop_map(|(x, y)| Point::new(x, y))
+    }
+
+    proptest! {
+        /// Slow twin: every lattice point on a raster line against every wall.
+        #[test]
+        fn gaps_have_all_clear_lattice_points(
+            slits in prop::collection::vec((point(), point()), 0..6),
+        ) {
+            let slits: Vec<[Point; 2]> = (slits.into_iter())
+                .filter(|(a, b)| a != b)
+                .map(|(a, b)| [a, b])
+                .collect();
+            let domain = domain(&slits);
+            let arrangement = noding::node(&domain, &noding::Options { tile_cells: 1 << 20 });
+            let arrangement = noding::clip(&domain, arrangement).0;
+            let options = partition::Options { corner_deg: 30.0, tile_cells: 1 << 20 };
+            let faces = partition(&domain, &arrangement, &options).unwrap();
+            let walls = Walls::of(&arrangement, &faces, PITCH);
+            let step = vec![Some(3); faces.subdomains.len()];
+            let gaps = gaps(&walls, &faces, &step);
+            for along in [Along::X, Along::Y] {
+                for line in (-12..45).step_by(3) {
+                    let on = LatticeLine { along, line };
+                    for k in -12..45 {
+                        let p = on.point(k, PITCH);
+                        let inside = partition::subdomains_at(&arrangement, &faces, &[p])[0];
+                        let clear = (0..arrangement.edges.len() as u32)
+                            .map(|edge| distance_between([p, p], walls.ends(edge)))
+                            .fold(f64::INFINITY, f64::min) / f64::from(PITCH);
+                        let gap = gaps.iter().find(|gap| {
+                            gap.on == on && (gap.first..=gap.last).contains(&k)
+                        });
+                        let is_inside = (inside as usize) < faces.subdomains.len();
+                        if (clear - CLEAR).abs() > 1e-9 {
+                            prop_assert_eq!(gap.is_some(), is_inside && clear > CLEAR);
+                            prop_assert!(gap.is_none_or(|gap| gap.face == inside));
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -16,8 +16,8 @@ const SMALL: f64 = 0.25;
 
 /// For each cell, the part that it belongs to: a cell of it.
 ///
-/// The smallest part joins the neighbour with which it shares the costliest borders, if both fit
-/// the budget; and so on until nothing fits. Parts only grow, so what does not fit never will.
+/// The smallest part joins the neighbour with which it shares the costliest borders, if both fit the
+/// budget; and so on until nothing fits. Parts only grow, so what does not fit never will.
 pub(super) fn merge(quads: &[f64], borders: &[Border], budget: f64, slack: f64) -> Vec<u32> {
     let mut parts = Parts::of(quads, borders);
     // Positive floats sort like their bits.
@@ -73,14 +73,20 @@ impl Parts {
         cell
     }
 
-    /// The neighbour with the costliest borders among those that fit the budget or else the limit.
+    /// The neighbour with the costliest borders among those that fit the budget or else the limit;
+    /// of several (on a raster, many) the smallest, so that parts become round.
     fn best_neighbour(&self, part: u32, budget: f64, limit: f64) -> Option<u32> {
         let fitting = |most: f64| {
             (self.neighbours[part as usize].iter())
                 .filter(|(other, _)| {
                     self.quads[part as usize] + self.quads[**other as usize] <= most
                 })
-                .max_by(|(a, p), (b, q)| p.total_cmp(q).then(b.cmp(a)))
+                .max_by(|(a, p), (b, q)| {
+                    let size = |part: u32| self.quads[part as usize];
+                    (p.total_cmp(q))
+                        .then(size(**b).total_cmp(&size(**a)))
+                        .then(b.cmp(a))
+                })
                 .map(|(&other, _)| other)
         };
         fitting(budget).or_else(|| fitting(limit))
@@ -100,5 +106,52 @@ impl Parts {
             }
         }
         kept
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Border;
+    use super::merge;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// No part is above the limit, all are connected, and no two neighbours fit one budget.
+        #[test]
+        fn parts_fit_and_are_maximal(
+            quads in prop::collection::vec(1.0..300.0, 1..40),
+            pairs in prop::collection::vec((0..40u32, 0..40u32, 0.0..3.0), 0..100),
+        ) {
+            let n = quads.len() as u32;
+            let borders: Vec<Border> = (pairs.iter())
+                .map(|&(a, b, price)| Border { cells: [a % n, b % n], price })
+                .collect();
+            let part = merge(&quads, &borders, 1000.0, 1.5);
+            let mut size = vec![0.0; quads.len()];
+            for cell in 0..quads.len() {
+                size[part[cell] as usize] += quads[cell];
+            }
+            prop_assert!(size.iter().all(|&size| size <= 1500.0));
+            // Flood inside the parts: as many floods as parts.
+            let mut label: Vec<u32> = (0..n).collect();
+            for _ in 0..n {
+                for Border { cells: [a, b], .. } in &borders {
+                    let (a, b) = (*a as usize, *b as usize);
+                    if part[a] == part[b] {
+                        let least = label[a].min(label[b]);
+                        (label[a], label[b]) = (least, least);
+                    } else {
+                        let sum = size[part[a] as usize] + size[part[b] as usize];
+                        prop_assert!(sum > 1000.0);
+                    }
+                }
+            }
+            let count = |mut ids: Vec<u32>| {
+                ids.sort_unstable();
+                ids.dedup();
+                ids.len()
+            };
+            prop_assert_eq!(count(label), count(part));
+        }
     }
 }

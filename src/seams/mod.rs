@@ -91,7 +91,9 @@ const SLACK: f64 = 1.5;
 /// Edge length of the lattice, cells: the default size in whole cells. Lattice points are its
 /// multiples; so are those of the parts' meshes.
 pub fn pitch_cells(domain: &Domain, sizes: &SizeWish) -> i32 {
-    (sizes.default_m / domain.grid.cell_m).round().max(1.0) as i32
+    (sizes.default_m / domain.grid.cell_m)
+        .round()
+        .clamp(1.0, f64::from(1 << 29)) as i32
 }
 
 /// Cuts every sub-domain of more than 1.5 budgets.

@@ -16,6 +16,10 @@ pub(super) const ENDS_APART: f64 = 1.2;
 /// Pitches from a crossing of the raster to where a seam leaves its line for a wall.
 const STRAIGHT_BEFORE_END: i64 = 2;
 
+/// What the side of a cell of the raster costs, in perfect ends: enough that parts along a wall do
+/// not become ribbons only to spare ends.
+const SIDE_PRICE: f64 = 2.0;
+
 /// One end of a candidate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stop {
@@ -39,7 +43,7 @@ pub(super) struct Candidate {
     pub face: SubdomainId,
     pub on: LatticeLine,
     pub stops: [Stop; 2],
-    /// What its ends cost, and a trifle for its length.
+    /// What its ends and its length cost.
     pub price: f64,
 }
 
@@ -98,7 +102,7 @@ fn propose_in(walls: &Walls, gap: &Gap, all: &mut Vec<Candidate>) {
                 face: gap.face,
                 on,
                 stops: [from, to],
-                price: ends.map(|end| end.price).sum::<f64>() + 0.01 * length,
+                price: ends.map(|end| end.price).sum::<f64>() + SIDE_PRICE * length / step as f64,
             });
         }
     };

@@ -534,7 +534,7 @@ proptest! {
 #[test]
 fn many_nested_rings_take_no_quadratic_time() {
     let n = 20_000;
-    let rings: Vec<(u8, [At; 4])> = (0..n)
+    let rings: Vec<[At; 5]> = (0..n)
         .map(|k| {
             [
                 (k, k),
