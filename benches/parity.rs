@@ -13,8 +13,13 @@ use polder::partition::subdomains::Subdomain;
 use std::time::Instant;
 
 fn main() {
-    let largest = std::env::args().filter_map(|word| word.parse().ok()).next().unwrap_or(100_000);
-    println!("family  sub-domains   curves     odd  proven  extra cost        gap  events  rows  seconds  + HiGHS");
+    let largest = std::env::args()
+        .filter_map(|word| word.parse().ok())
+        .next()
+        .unwrap_or(100_000);
+    println!(
+        "family  sub-domains   curves     odd  proven  extra cost        gap  events  rows  seconds  + HiGHS"
+    );
     for family in ["grid", "merged", "long", "fine"] {
         for subdomains in [1_000_usize, 10_000, 100_000, 1_000_000] {
             if subdomains <= largest {
@@ -26,13 +31,20 @@ fn main() {
 
 fn row(family: &str, subdomains: usize) {
     let (partition, goals) = city(family, (subdomains as f64).sqrt().round() as usize);
-    let alone = Options { events_max: u64::MAX, nodes_max: 1000, rows_max: 0 };
+    let alone = Options {
+        events_max: u64::MAX,
+        nodes_max: 1000,
+        rows_max: 0,
+    };
     let start = Instant::now();
     let made = parity::balance(&partition, &goals, &alone).expect("a feasible city");
     let seconds = start.elapsed().as_secs_f64();
     check(&partition, &goals, &made).expect("a sound balance");
     let start = Instant::now();
-    let asked = Options { rows_max: 2_000_000, ..alone };
+    let asked = Options {
+        rows_max: 2_000_000,
+        ..alone
+    };
     let both = parity::balance(&partition, &goals, &asked).expect("a feasible city");
     println!(
         "{family:7} {:11} {:8} {:7}  {:6}  {:10.3}  {:9.2e}  {:6.1}  {}x{}{}  {seconds:7.2}  {:8.2}",
@@ -50,7 +62,11 @@ fn row(family: &str, subdomains: usize) {
     );
     if let Some(claimed) = both.claimed {
         let off = (claimed - both.objective).abs() / both.objective;
-        assert!(off < 1e-6, "HiGHS claims {claimed}, {} is proven", both.objective);
+        assert!(
+            off < 1e-6,
+            "HiGHS claims {claimed}, {} is proven",
+            both.objective
+        );
     }
 }
 
@@ -85,7 +101,13 @@ fn city(family: &str, side: usize) -> (Partition, Goals) {
     let mut street = |left: u32, right: u32, goal: f64| {
         if left != right {
             let edges = vec![curves.len() as u32];
-            curves.push(Curve { nodes: vec![0, 1], edges, left, right, is_seam: false });
+            curves.push(Curve {
+                nodes: vec![0, 1],
+                edges,
+                left,
+                right,
+                is_seam: false,
+            });
             goals.goal.push(goal);
             goals.lower.push(1);
             goals.upper.push((2.5 * goal).ceil() as u32 + 3);

@@ -88,6 +88,7 @@ impl Graph<'_> {
 
     /// Replaces an edge by two that meet in `bend`; returns the node there.
     pub(super) fn bend(&mut self, edge: u32, bend: Bend, share: f64) -> Option<u32> {
+        let edge = self.current(edge)?;
         let [a, b] = self.edges[edge as usize].ends;
         let (a_at, b_at) = (self.point(a), self.point(b));
         let (p, vacant) = match bend {

@@ -6,6 +6,7 @@ use std::collections::BinaryHeap;
 
 use crate::cleanup::graph::Graph;
 use crate::cleanup::importance::Importance;
+use crate::cleanup::importance::is_rim_corner;
 use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;
 use crate::cleanup::operate::Bend;
@@ -186,6 +187,9 @@ pub(super) fn unite(
     } else {
         (u, v)
     };
+    if is_rim_corner(graph, give) {
+        return None;
+    }
     let (at, moved) = (
         graph.point(keep),
         distance(graph.metres(u), graph.metres(v)),
@@ -193,6 +197,9 @@ pub(super) fn unite(
     if graph.merge(give, keep, share) {
         graph.note(what, at, moved);
         return Some(keep);
+    }
+    if is_rim_corner(graph, keep) {
+        return None;
     }
     if graph.merge(keep, give, share) {
         graph.note(what, graph.point(give), moved);
@@ -217,6 +224,7 @@ fn middle(a: Point, b: Point) -> Point {
 /// Joins a node to an edge that passes it: with the nearer end if that is near, else the node moves
 /// to its foot, or the edge bends to the node, whichever is the less important.
 pub(super) fn join(graph: &mut Graph, node: u32, edge: u32, near: f64, share: f64) -> Option<u32> {
+    let edge = graph.current(edge)?;
     let it = &graph.edges[edge as usize];
     let (ends, rank, size_m) = (it.ends, it.rank, it.size_m);
     let (a, b) = graph.ends_m(edge);
@@ -242,10 +250,13 @@ pub(super) fn join(graph: &mut Graph, node: u32, edge: u32, near: f64, share: f6
         return None;
     }
     let moved = [graph.point(node)];
-    let bends = Importance::of(graph, node).rank > rank;
+    let bends = Importance::of(graph, node).rank > rank || is_rim_corner(graph, node);
     if bends && graph.bend(edge, Bend::To(node), share).is_some() {
         graph.note(what, moved[0], gap);
         return Some(node);
+    }
+    if is_rim_corner(graph, node) {
+        return None;
     }
     if let Some(landed) = land(
         graph,
@@ -257,8 +268,6 @@ pub(super) fn join(graph: &mut Graph, node: u32, edge: u32, near: f64, share: f6
         graph.note(what, graph.point(landed), gap);
         return Some(landed);
     }
-    // a failed landing may have replaced the edge by an equal one
-    let edge = graph.find(ends[0], ends[1])?;
     if !bends && graph.bend(edge, Bend::To(node), share).is_some() {
         graph.note(what, moved[0], gap);
         return Some(node);

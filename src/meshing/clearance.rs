@@ -107,7 +107,10 @@ fn side_of([a, b]: [Xy; 2], p: Xy) -> (f64, f64) {
     let t = ((px * ex + py * ey) / length2).clamp(0.0, 1.0);
     let distance = (px - t * ex).hypot(py - t * ey);
     let cross = ex * py - ey * px;
-    (distance, cross / (length2.sqrt() * distance.max(f64::MIN_POSITIVE)))
+    (
+        distance,
+        cross / (length2.sqrt() * distance.max(f64::MIN_POSITIVE)),
+    )
 }
 
 /// Points in a hash grid, added one by one.
@@ -121,7 +124,11 @@ pub(crate) struct Spacing {
 impl Spacing {
     /// An empty grid with cells of side `cell_m`.
     pub fn new(cell_m: f64) -> Spacing {
-        Spacing { cell_m, first: FxHashMap::default(), points: Vec::new() }
+        Spacing {
+            cell_m,
+            first: FxHashMap::default(),
+            points: Vec::new(),
+        }
     }
 
     fn cell(&self, p: Xy) -> (i32, i32) {

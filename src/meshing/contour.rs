@@ -56,9 +56,17 @@ impl Contour {
         self.ids.len()
     }
 
-    /// Angle from the edge that leaves `entry` counter-clockwise to `direction`, in [0, 2 pi).
+    /// Angle from the edge that leaves `entry` counter-clockwise to `direction` (radians, above
+    /// -pi and at most 2 pi), in [0, 2 pi).
     pub fn opening(&self, entry: usize, direction: f64) -> f64 {
-        (direction - self.heading[entry]).rem_euclid(TAU)
+        let turn = direction - self.heading[entry];
+        if turn < 0.0 {
+            turn + TAU
+        } else if turn >= TAU {
+            turn - TAU
+        } else {
+            turn
+        }
     }
 
     /// Signed area, m².

@@ -81,7 +81,10 @@ impl Core {
             }
         }
         let base = low.map(|v| v.floor() - 2.0);
-        let extent = [high[0].ceil() + 2.0 - base[0], high[1].ceil() + 2.0 - base[1]];
+        let extent = [
+            high[0].ceil() + 2.0 - base[0],
+            high[1].ceil() + 2.0 - base[1],
+        ];
         if !(extent[0] * extent[1] < LARGEST_MAP) {
             return None;
         }
@@ -160,12 +163,17 @@ impl Core {
     /// Closes the open cells with a corner nearer than `radius` to the segment `a b`.
     fn clear(&mut self, a: Xy, b: Xy, radius: f64) {
         let first = (a[1].min(b[1]) - radius).ceil().max(1.0);
-        let last = (a[1].max(b[1]) + radius).floor().min(self.rows as f64 - 1.0);
+        let last = (a[1].max(b[1]) + radius)
+            .floor()
+            .min(self.rows as f64 - 1.0);
         for j in first as usize..=last as usize {
             let Some([x0, x1]) = capsule_on_row(a, b, radius, j as f64) else {
                 continue;
             };
-            let (n0, n1) = (x0.ceil().max(1.0) as usize, x1.floor().min(self.columns as f64 - 1.0));
+            let (n0, n1) = (
+                x0.ceil().max(1.0) as usize,
+                x1.floor().min(self.columns as f64 - 1.0),
+            );
             if (n0 as f64) > n1 {
                 continue;
             }
@@ -198,7 +206,9 @@ impl Core {
         let at = j * self.columns + i;
         let w = self.columns;
         let known = |a: (usize, usize), b: (usize, usize)| {
-            [a, b].iter().all(|&(i, j)| !self.seam_visits(i, j).is_empty())
+            [a, b]
+                .iter()
+                .all(|&(i, j)| !self.seam_visits(i, j).is_empty())
         };
         let [low_left, low_right] = [(i, j), (i + 1, j)];
         let [high_left, high_right] = [(i, j + 1), (i + 1, j + 1)];
@@ -239,8 +249,12 @@ impl Core {
             }
             let open = |n: usize| self.cells[n] >= cell::OPEN;
             let (mut in_block, mut pinch) = (false, None);
-            for (beside, above) in [(at - 1, at - w), (at + 1, at - w), (at - 1, at + w), (at + 1, at + w)]
-            {
+            for (beside, above) in [
+                (at - 1, at - w),
+                (at + 1, at - w),
+                (at - 1, at + w),
+                (at + 1, at + w),
+            ] {
                 let diagonal = beside + above - at;
                 match (open(beside), open(above), open(diagonal)) {
                     (true, true, true) => in_block = true,
@@ -262,7 +276,16 @@ impl Core {
     /// The eight cells around one.
     fn around(&self, at: usize) -> [usize; 8] {
         let w = self.columns;
-        [at - w - 1, at - w, at - w + 1, at - 1, at + 1, at + w - 1, at + w, at + w + 1]
+        [
+            at - w - 1,
+            at - w,
+            at - w + 1,
+            at - 1,
+            at + 1,
+            at + w - 1,
+            at + w,
+            at + w + 1,
+        ]
     }
 
     /// Settles the islands of open cells that are large enough, closes the others.

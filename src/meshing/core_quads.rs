@@ -95,7 +95,13 @@ fn number_row(core: &Core, j: usize, visits: usize, row: &mut [u32], nodes: &mut
 }
 
 /// Gives cell `[i, j]` the visits in whose sectors it lies.
-fn settle_on_seam(core: &Core, visits: &Visits, next: &[u32], [i, j]: [usize; 2], quad: &mut [u32; 4]) {
+fn settle_on_seam(
+    core: &Core,
+    visits: &Visits,
+    next: &[u32],
+    [i, j]: [usize; 2],
+    quad: &mut [u32; 4],
+) {
     let middle = core.lattice.place([i as f64 + 0.5, j as f64 + 0.5]);
     for (k, (di, dj)) in [(0, 0), (1, 0), (1, 1), (0, 1)].into_iter().enumerate() {
         if quad[k] != SEAM {
@@ -117,7 +123,11 @@ pub(crate) fn turn(at: Xy, a: Xy, b: Xy) -> f64 {
     let (ax, ay) = (a[0] - at[0], a[1] - at[1]);
     let (bx, by) = (b[0] - at[0], b[1] - at[1]);
     let angle = (ax * by - ay * bx).atan2(ax * bx + ay * by);
-    if angle < 0.0 { angle + std::f64::consts::TAU } else { angle }
+    if angle < 0.0 {
+        angle + std::f64::consts::TAU
+    } else {
+        angle
+    }
 }
 
 /// Notes which sides of a core cell are walk edges, and which look at the strip.
@@ -128,7 +138,11 @@ fn note_sides(core: &Core, next: &[u32], at: usize, quad: [u32; 4], out: &mut Co
         if next.get(from as usize) == Some(&to) {
             out.covered[from as usize] = true;
         } else if core.cells[beyond] < cell::ZONE {
-            out.rim.push(RimEdge { from, to, beyond: beyond as u32 });
+            out.rim.push(RimEdge {
+                from,
+                to,
+                beyond: beyond as u32,
+            });
         }
     }
 }

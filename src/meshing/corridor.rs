@@ -29,7 +29,10 @@ impl Regions {
 /// Floods the triangles.
 pub(crate) fn regions(triangles: &Triangles) -> Regions {
     let count = triangles.corners.len();
-    let mut regions = Regions { of: vec![NONE; count], is_odd: Vec::new() };
+    let mut regions = Regions {
+        of: vec![NONE; count],
+        is_odd: Vec::new(),
+    };
     let mut stack = Vec::new();
     for start in 0..count {
         if regions.of[start] != NONE {

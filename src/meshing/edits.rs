@@ -291,7 +291,12 @@ fn ring_edit(kernel: &Kernel, quad: u32) -> Edit {
     let first = kernel.nodes.len() as u32;
     let side = |i: u32| {
         let next = (i + 1) % 4;
-        [outer[i as usize], outer[next as usize], first + next, first + i]
+        [
+            outer[i as usize],
+            outer[next as usize],
+            first + next,
+            first + i,
+        ]
     };
     let mut new: Few<[u32; 4]> = (0..4).map(side).collect();
     new.push(std::array::from_fn(|i| first + i as u32));

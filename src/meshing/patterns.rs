@@ -14,7 +14,6 @@ use std::f64::consts::FRAC_PI_2;
 use std::f64::consts::PI;
 
 use crate::geometry::point::Xy;
-use crate::geometry::quad::distance;
 use crate::meshing::contour::Contour;
 use crate::meshing::sheet::Mark;
 use crate::meshing::sheet::Shape;
@@ -28,8 +27,12 @@ const CORNER_MAY: f64 = 158.0 * PI / 180.0;
 const REFLEX: f64 = 232.0 * PI / 180.0;
 /// What one irregular node is worth in misfit, radians².
 const IRREGULAR: f64 = 0.25;
-/// Longest loop for which pairs are searched: the search is cubic in the counts.
-const PAIR_LONGEST: usize = 160;
+/// Longest loop for which pairs are searched.
+const PAIR_LONGEST: usize = 800;
+/// Most corners that a few-sided loop may seem to have.
+const MOST_CORNERS: usize = 8;
+/// Plans that fit worse are not tried, radians².
+const WORST_MISFIT: f64 = 2.5;
 /// How many plans are tried, best first.
 const TRIED: usize = 3;
 
@@ -83,27 +86,20 @@ fn plans(contour: &Contour) -> Vec<Plan> {
         .filter(|&i| contour.angle[i] < CORNER_MAY)
         .collect();
     // More would be no few-sided loop, and the subsets too many.
-    if (3..=9).contains(&corners.len()) {
-        for count in 3..=6.min(corners.len()) {
-            subsets(&corners, count, &mut |chosen| {
-                plans.extend(plan_with_corners(contour, chosen));
-            });
+    if (3..=MOST_CORNERS).contains(&corners.len()) {
+        let must = (0..corners.len()).filter(|&k| contour.angle[corners[k]] < CORNER_MUST);
+        let must = must.fold(0_u32, |mask, k| mask | 1 << k);
+        for mask in 0_u32..1 << corners.len() {
+            if mask & must == must && (3..=6).contains(&mask.count_ones()) {
+                let taken = (0..corners.len()).filter(|k| mask >> k & 1 == 1);
+                let chosen: Vec<usize> = taken.map(|k| corners[k]).collect();
+                plans.extend(plan_with_corners(contour, &chosen));
+            }
         }
     }
     plans.sort_by(|p, q| p.misfit.total_cmp(&q.misfit));
     plans.truncate(TRIED);
     plans
-}
-
-/// Calls `visit` with each subset of `count` of `from`, in order.
-fn subsets(from: &[usize], count: usize, visit: &mut impl FnMut(&[usize])) {
-    for mask in 0_u32..1 << from.len() {
-        if mask.count_ones() as usize == count {
-            let taken = (0..from.len()).filter(|k| mask >> k & 1 == 1);
-            let chosen: Vec<usize> = taken.map(|k| from[k]).collect();
-            visit(&chosen);
-        }
-    }
 }
 
 /// What it adds to the misfit that an entry with this angle is a corner and not on a side.
@@ -151,12 +147,11 @@ fn grid_plan(contour: &Contour) -> Option<Plan> {
 
 /// The star or pair over these corners, if the counts allow it.
 fn plan_with_corners(contour: &Contour, corners: &[usize]) -> Option<Plan> {
-    let chosen = |i: usize| corners.contains(&i);
-    if (0..contour.len()).any(|i| contour.angle[i] < CORNER_MUST && !chosen(i)) {
-        return None;
-    }
     let gain: f64 = corners.iter().map(|&i| corner_gain(contour.angle[i])).sum();
     let misfit = misfit_without_corners(contour) + gain;
+    if misfit > WORST_MISFIT {
+        return None;
+    }
     let counts = counts(contour.len(), corners);
     if corners.len() == 4 {
         if counts[0] == counts[2] && counts[1] == counts[3] {
@@ -185,6 +180,12 @@ fn counts(n: usize, corners: &[usize]) -> Vec<usize> {
 /// Solves `count[i] = spoke[i-1] + spoke[i+1]` for whole spokes of at least 1, for 3, 5 or 6 sides;
 /// entries past the last side are 0.
 fn spokes(counts: &[usize]) -> Option<[usize; 6]> {
+    let spokes = loose_spokes(counts)?;
+    (spokes[..counts.len()].iter().all(|&spoke| spoke > 0)).then_some(spokes)
+}
+
+/// The same for spokes of at least 0.
+fn loose_spokes(counts: &[usize]) -> Option<[usize; 6]> {
     let n = counts.len();
     // Following steps of two from spoke i, the counts between them come with alternating sign.
     let terms = match n {
@@ -199,7 +200,7 @@ fn spokes(counts: &[usize]) -> Option<[usize; 6]> {
             let count = counts[(i + 2 * k + 1) % n] as i64;
             twice += if k % 2 == 0 { count } else { -count };
         }
-        if twice < 2 || twice % 2 == 1 {
+        if twice < 0 || twice % 2 == 1 {
             return None;
         }
         spokes[i] = twice as usize / 2;
@@ -208,26 +209,28 @@ fn spokes(counts: &[usize]) -> Option<[usize; 6]> {
 }
 
 /// The best line across any of the four corners: each spoke and the line itself should have
-/// edges as long as those of the loop. O(count³).
+/// edges as long as those of the loop. O(count² x mismatch).
 fn pair_plan(contour: &Contour, corners: &[usize], misfit: f64) -> Option<Plan> {
     if contour.len() > PAIR_LONGEST {
         return None;
     }
+    let size_m = contour.spacing_m.iter().sum::<f64>() / contour.len() as f64;
     let mut best: Option<(f64, usize, Cut)> = None;
     for turn in 0..4 {
         let mut turned = corners.to_vec();
         turned.rotate_left(turn);
         let counts = counts(contour.len(), &turned);
+        // The spokes of triangle and pentagon to the line have this many edges together.
+        let excess = (counts[0] + counts[3]).saturating_sub(counts[1] + counts[2]) / 2;
         for before in 1..counts[3] {
             for after in 1..counts[0] {
-                let shortest = before.abs_diff(after) + 2;
-                for across in (shortest..before + after).step_by(2) {
+                for spoke in 0..excess.min(before).min(after) {
                     let cut = Cut {
                         before,
                         after,
-                        across,
+                        across: before + after - 2 * spoke,
                     };
-                    let Some(stretch) = pair_stretch(contour, &turned, &counts, cut) else {
+                    let Some(stretch) = pair_stretch(contour, &turned, &counts, cut, size_m) else {
                         continue;
                     };
                     if best.is_none_or(|(least, _, _)| stretch < least) {
@@ -247,32 +250,45 @@ fn pair_plan(contour: &Contour, corners: &[usize], misfit: f64) -> Option<Plan> 
     })
 }
 
-/// Mean squared log of wished over actual edge length along the spokes and the line, or `None` if
-/// the counts do not fit.
-fn pair_stretch(contour: &Contour, corners: &[usize], counts: &[usize], cut: Cut) -> Option<f64> {
+/// How far edges along the spokes and the line are from `size_m`, or `None` if the counts do not
+/// fit: the mean of `(r - 1/r)² / 4` over the ratios r, near 1 the squared logarithm.
+fn pair_stretch(
+    contour: &Contour,
+    corners: &[usize],
+    counts: &[usize],
+    cut: Cut,
+    size_m: f64,
+) -> Option<f64> {
     let (triangle, pentagon) = pair_counts(counts, cut);
-    let (three, five) = (spokes(&triangle)?, spokes(&pentagon)?);
+    let (three, five) = (loose_spokes(&triangle)?, spokes(&pentagon)?);
     let n = contour.len();
     let at = |entry: usize| contour.at[entry % n];
     let (before, after) = (corners[0] + n - cut.before, corners[0] + cut.after);
     let (p, q) = (at(before), at(after));
     let far = [corners[1], corners[2], corners[3]].map(at);
-    let size_m = contour.spacing_m.iter().sum::<f64>() / n as f64;
     let mut sum = 0.0;
-    let mut weigh = |length: f64, count: usize| {
-        sum += (length / (count as f64 * size_m)).ln().powi(2);
+    let mut weigh = |a: Xy, b: Xy, count: usize| {
+        let wished = count as f64 * size_m;
+        let ratio2 = ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)) / (wished * wished);
+        sum += 0.25 * (ratio2 + 1.0 / ratio2 - 2.0);
     };
-    weigh(distance(p, q), cut.across);
     let near = at(corners[0]);
-    let centre = centroid(&[near, p, q]);
-    for (side, (a, b)) in [(near, q), (q, p), (p, near)].into_iter().enumerate() {
-        weigh(distance(centre, middle(a, b)), three[side]);
+    if three[1] == 0 {
+        let bend = bend(near, p, q);
+        weigh(q, bend, three[0]);
+        weigh(bend, p, three[2]);
+    } else {
+        weigh(p, q, cut.across);
+        let centre = centroid(&[near, p, q]);
+        for (side, (a, b)) in [(near, q), (q, p), (p, near)].into_iter().enumerate() {
+            weigh(centre, middle(a, b), three[side]);
+        }
     }
     let ring = [q, far[0], far[1], far[2], p];
     let centre = centroid(&ring);
     for side in 0..5 {
         let foot = middle(ring[side], ring[(side + 1) % 5]);
-        weigh(distance(centre, foot), five[side]);
+        weigh(centre, foot, five[side]);
     }
     Some(sum / 9.0)
 }
@@ -289,6 +305,12 @@ fn pair_counts(counts: &[usize], cut: Cut) -> ([usize; 3], [usize; 5]) {
             cut.across,
         ],
     )
+}
+
+/// Where the line across `near` bends if the triangle is a mere grid: between the fourth corner of
+/// a parallelogram, which the grid would like, and a straight line, which the pentagon would.
+fn bend(near: Xy, p: Xy, q: Xy) -> Xy {
+    std::array::from_fn(|axis| 0.8 * (p[axis] + q[axis]) - 0.6 * near[axis])
 }
 
 fn middle(a: Xy, b: Xy) -> Xy {
@@ -369,22 +391,36 @@ fn lay_star(sheet: &mut Sheet, sides: &[Vec<u32>]) {
     }
 }
 
-/// A triangle at corner 0 and the pentagon left.
+/// A triangle at corner 0 and the pentagon left. Without a spoke to the line, the triangle is a grid
+/// and its centre, still of valence 3, lies on the line.
 fn lay_pair(sheet: &mut Sheet, sides: &[Vec<u32>], cut: Cut) {
     let (up, past) = (&sides[3], &sides[0]);
     let split = up.len() - 1 - cut.before;
-    let line = sheet.line(past[cut.after], up[split], cut.across);
-    let back: Vec<u32> = line.iter().rev().copied().collect();
-    lay_star(
-        sheet,
-        &[past[..=cut.after].to_vec(), line, up[split..].to_vec()],
-    );
+    let (p, q) = (up[split], past[cut.after]);
+    let near = [past[..=cut.after].to_vec(), up[split..].to_vec()];
+    let line = if cut.across == cut.before + cut.after {
+        let [a, b, c] = [past[0], p, q].map(|node| sheet.nodes[node as usize]);
+        let centre = sheet.node(bend(a, b, c));
+        let (east, north) = (
+            sheet.line(q, centre, cut.before),
+            sheet.line(p, centre, cut.after),
+        );
+        let west: Vec<u32> = near[1].iter().rev().copied().collect();
+        sheet.grid(&near[0], &east, &north, &west);
+        let rest = north[..cut.after].iter().rev();
+        east.iter().chain(rest).copied().collect()
+    } else {
+        let line = sheet.line(q, p, cut.across);
+        let [after, before] = near;
+        lay_star(sheet, &[after, line.clone(), before]);
+        line
+    };
     let five = [
         past[cut.after..].to_vec(),
         sides[1].clone(),
         sides[2].clone(),
         up[..=split].to_vec(),
-        back,
+        line.iter().rev().copied().collect(),
     ];
     lay_star(sheet, &five);
 }

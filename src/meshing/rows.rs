@@ -103,7 +103,9 @@ impl WalkEdges {
 
 /// How far from the walk its row lies where its nodes are `spacing_m` apart.
 fn row_offset_m(spacing_m: f64, size_m: f64) -> f64 {
-    (spacing_m * size_m).sqrt().clamp(0.5 * size_m, 1.5 * size_m)
+    (spacing_m * size_m)
+        .sqrt()
+        .clamp(0.5 * size_m, 1.5 * size_m)
 }
 
 /// The nodes that the angle at border visit `k` asks for.
@@ -133,7 +135,11 @@ fn propose(
         a if a < 240.0 => (Rank::Row, &[(0.5, offset_m / half.max(0.8))]),
         a if a < 300.0 => (
             Rank::Row,
-            &[(1.0 / 3.0, offset_m), (0.5, 1.414 * offset_m), (2.0 / 3.0, offset_m)],
+            &[
+                (1.0 / 3.0, offset_m),
+                (0.5, 1.414 * offset_m),
+                (2.0 / 3.0, offset_m),
+            ],
         ),
         _ => (
             Rank::Row,
@@ -148,7 +154,10 @@ fn propose(
     };
     for &(share, reach_m) in fan {
         let direction = start + share * angle;
-        let place = [at[0] + reach_m * direction.cos(), at[1] + reach_m * direction.sin()];
+        let place = [
+            at[0] + reach_m * direction.cos(),
+            at[1] + reach_m * direction.sin(),
+        ];
         let least_m = match rank {
             Rank::Acute => 0.2 * spacing_m,
             _ => ROW_GAP * offset_m.min(size_m),
@@ -157,7 +166,12 @@ fn propose(
             continue;
         };
         if nearest.inside && nearest.distance_m >= least_m {
-            proposals.push(Proposal { rank, at: place, clear_m: nearest.distance_m, offset_m });
+            proposals.push(Proposal {
+                rank,
+                at: place,
+                clear_m: nearest.distance_m,
+                offset_m,
+            });
         }
     }
 }
@@ -170,19 +184,13 @@ fn is_clear_of_core(core: &Core, p: Xy, gap: f64) -> bool {
         return core.state(u) == cell::OUT;
     }
     let (i, j) = (u[0] as usize, u[1] as usize);
-    [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)].into_iter().all(|(i, j)| {
-        (u[0] - i as f64).hypot(u[1] - j as f64) >= gap || !core.is_core_node(i, j)
-    })
+    [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)]
+        .into_iter()
+        .all(|(i, j)| (u[0] - i as f64).hypot(u[1] - j as f64) >= gap || !core.is_core_node(i, j))
 }
 
 /// Adds the lattice nodes of the strip that have room, those farthest from the walks first.
-fn fill(
-    core: &Core,
-    walk: &WalkEdges,
-    clearance: &Clearance,
-    row: &Spacing,
-    nodes: &mut Vec<Xy>,
-) {
+fn fill(core: &Core, walk: &WalkEdges, clearance: &Clearance, row: &Spacing, nodes: &mut Vec<Xy>) {
     let size_m = core.lattice.pitch_m;
     let w = core.columns;
     for j in 1..core.rows {
@@ -195,11 +203,14 @@ fn fill(
                 continue;
             }
             let place = core.lattice.place([i as f64, j as f64]);
-            let room = clearance.nearest(place, 2.0 * size_m).is_none_or(|nearest| {
-                let [a, b] = walk.segments[nearest.segment as usize];
-                let spacing_m = (b[0] - a[0]).hypot(b[1] - a[1]);
-                nearest.inside && nearest.distance_m > FILL_GAP * row_offset_m(spacing_m, size_m)
-            });
+            let room = clearance
+                .nearest(place, 2.0 * size_m)
+                .is_none_or(|nearest| {
+                    let [a, b] = walk.segments[nearest.segment as usize];
+                    let spacing_m = (b[0] - a[0]).hypot(b[1] - a[1]);
+                    nearest.inside
+                        && nearest.distance_m > FILL_GAP * row_offset_m(spacing_m, size_m)
+                });
             if room && row.is_free(place, FILL_GAP * size_m) {
                 nodes.push(place);
             }

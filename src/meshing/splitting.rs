@@ -80,7 +80,7 @@ fn all(contour: &Contour, size_m: f64) -> BinaryHeap<Candidate> {
             let Some(count) = best_count(ideal, to - from, n) else {
                 continue;
             };
-            let fit = (count as f64 / ideal).ln().abs();
+            let fit = misfit(count, ideal);
             // Splitting can gain up to two right angles in all; the cost stays positive.
             let cost = ANGLES * (0.5 + angles / TAU) + LENGTH * length / diagonal_m + FIT * fit;
             lines.push(Reverse((
@@ -119,7 +119,8 @@ pub(crate) fn end_error(opening: f64, angle: f64) -> Option<f64> {
 
 /// Distance of an angle from the nearest multiple of 90 degrees that is not zero.
 fn from_right(angle: f64) -> f64 {
-    (angle - (angle / FRAC_PI_2).round().max(1.0) * FRAC_PI_2).abs()
+    let right_angles = (angle / FRAC_PI_2 + 0.5) as u32;
+    (angle - f64::from(right_angles.max(1)) * FRAC_PI_2).abs()
 }
 
 /// Wished edge length at `along_m` on a line of `length_m`: linear between its ends, and with the
@@ -149,12 +150,14 @@ fn best_count(ideal: f64, skip: usize, n: usize) -> Option<usize> {
     let below = (ideal.max(1.0) as usize).clamp(least, most);
     let below = below - (below - least) % 2;
     let above = (below + 2).min(most);
-    let off = |count: usize| (count as f64 / ideal).ln().abs();
-    Some(if off(above) < off(below) {
-        above
-    } else {
-        below
-    })
+    let above_fits = misfit(above, ideal) < misfit(below, ideal);
+    Some(if above_fits { above } else { below })
+}
+
+/// How far a count is from the ideal one: near it the logarithm of their ratio.
+fn misfit(count: usize, ideal: f64) -> f64 {
+    let ratio = count as f64 / ideal;
+    0.5 * (ratio - 1.0 / ratio).abs()
 }
 
 fn diagonal_m(at: &[Xy]) -> f64 {

@@ -103,6 +103,10 @@ fn assemble(visits: &Visits, core: CoreQuads, border: &StripBorder, strip: &Draf
         visits: visits.len(),
         quads,
         settled,
-        method: if has_core { Method::Strip } else { Method::Indirect },
+        method: if has_core {
+            Method::Strip
+        } else {
+            Method::Indirect
+        },
     }
 }

@@ -57,14 +57,21 @@ pub(crate) fn chain(visits: &Visits, next: &[u32], core: &CoreQuads) -> Option<S
         while !used[at] {
             used[at] = true;
             let edge = edges[at];
-            let on_walk = edge.rim_cell.is_none() && before.is_none_or(|e: Edge| e.rim_cell.is_none());
+            let on_walk =
+                edge.rim_cell.is_none() && before.is_none_or(|e: Edge| e.rim_cell.is_none());
             border.node.push(edge.from);
             border.visits.nodes.push(place(edge.from));
-            border.visits.unique.push(match (edge.from as usize).checked_sub(visits.len()) {
-                None => visits.unique[edge.from as usize],
-                Some(k) => first_unique + k as u32,
-            });
-            border.visits.on_seam.push(edge.rim_cell.is_none() && visits.on_seam[edge.from as usize]);
+            border
+                .visits
+                .unique
+                .push(match (edge.from as usize).checked_sub(visits.len()) {
+                    None => visits.unique[edge.from as usize],
+                    Some(k) => first_unique + k as u32,
+                });
+            border
+                .visits
+                .on_seam
+                .push(edge.rim_cell.is_none() && visits.on_seam[edge.from as usize]);
             border.on_walk.push(on_walk);
             border.rim_cell.push(edge.rim_cell);
             before = Some(edge);
@@ -83,7 +90,11 @@ pub(crate) fn chain(visits: &Visits, next: &[u32], core: &CoreQuads) -> Option<S
 /// Walk edges that the core does not cover, then rim edges turned round; sorted by start.
 fn border_edges(next: &[u32], core: &CoreQuads) -> Vec<Edge> {
     let open = |&v: &u32| !core.covered[v as usize];
-    let on_walk = |v: u32| Edge { from: v, to: next[v as usize], rim_cell: None };
+    let on_walk = |v: u32| Edge {
+        from: v,
+        to: next[v as usize],
+        rim_cell: None,
+    };
     let mut edges: Vec<Edge> = (0..next.len() as u32).filter(open).map(on_walk).collect();
     edges.extend(core.rim.iter().map(|rim| Edge {
         from: rim.to,
@@ -97,7 +108,10 @@ fn border_edges(next: &[u32], core: &CoreQuads) -> Vec<Edge> {
 /// The edge on which a walk along `edge` goes on.
 fn following(edges: &[Edge], edge: Edge, place: impl Fn(u32) -> Xy) -> Option<usize> {
     let first = edges.partition_point(|other| other.from < edge.to);
-    let count = edges[first..].iter().take_while(|other| other.from == edge.to).count();
+    let count = edges[first..]
+        .iter()
+        .take_while(|other| other.from == edge.to)
+        .count();
     let at = place(edge.to);
     let clockwise = |&k: &usize| match count {
         1 => 0.0,

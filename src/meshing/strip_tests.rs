@@ -10,7 +10,9 @@ fn sides(corners: &[Xy], spacing_m: f64) -> Vec<Xy> {
     let mut out = Vec::new();
     for k in 0..corners.len() {
         let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
-        let n = ((b[0] - a[0]).hypot(b[1] - a[1]) / spacing_m).round().max(1.0) as usize;
+        let n = ((b[0] - a[0]).hypot(b[1] - a[1]) / spacing_m)
+            .round()
+            .max(1.0) as usize;
         for s in 0..n {
             let t = s as f64 / n as f64;
             out.push([a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]);
@@ -31,7 +33,10 @@ fn circle(at: Xy, radius: f64, count: usize, clockwise: bool) -> Vec<Xy> {
 
 fn turned(points: Vec<Xy>, degrees: f64) -> Vec<Xy> {
     let (s, c) = degrees.to_radians().sin_cos();
-    points.into_iter().map(|p| [p[0] * c - p[1] * s, p[0] * s + p[1] * c]).collect()
+    points
+        .into_iter()
+        .map(|p| [p[0] * c - p[1] * s, p[0] * s + p[1] * c])
+        .collect()
 }
 
 /// Loops from positions; equal positions are one node.
@@ -43,16 +48,24 @@ fn loops_of(walks: Vec<Vec<Xy>>, size_m: f64) -> Loops {
         let ids: Vec<u32> = walk
             .iter()
             .map(|p| {
-                *index.entry([p[0].to_bits(), p[1].to_bits()]).or_insert_with(|| {
-                    nodes.push(*p);
-                    nodes.len() as u32 - 1
-                })
+                *index
+                    .entry([p[0].to_bits(), p[1].to_bits()])
+                    .or_insert_with(|| {
+                        nodes.push(*p);
+                        nodes.len() as u32 - 1
+                    })
             })
             .collect();
         out.push(ids);
     }
     let on_seam = out.iter().map(|walk| vec![false; walk.len()]).collect();
-    Loops { nodes, walks: out, size_m, lattice_origin: None, on_seam }
+    Loops {
+        nodes,
+        walks: out,
+        size_m,
+        lattice_origin: None,
+        on_seam,
+    }
 }
 
 fn even(mut walk: Vec<Xy>, total: usize) -> Vec<Xy> {
@@ -84,35 +97,84 @@ fn assert_sound(draft: &Draft, visits: &Visits) {
         }
     }
     for v in 0..visits.len() as u32 {
-        assert!(edges.contains_key(&(v, visits.next(v))), "walk edge {v} lost");
+        assert!(
+            edges.contains_key(&(v, visits.next(v))),
+            "walk edge {v} lost"
+        );
     }
     for &(a, b) in edges.keys() {
         let on_walk = (a as usize) < visits.len() && visits.next(a) == b;
-        assert!(on_walk != edges.contains_key(&(b, a)), "edge {a} {b} {on_walk}");
+        assert!(
+            on_walk != edges.contains_key(&(b, a)),
+            "edge {a} {b} {on_walk}"
+        );
     }
 }
 
 fn shapes() -> Vec<(&'static str, Loops)> {
     let h = 1.0;
     let mut list = Vec::new();
-    list.push(("disc", loops_of(vec![circle([0.0; 2], 20.0, 126, false)], h)));
-    let l = [[0.0, 0.0], [40.0, 0.0], [40.0, 20.0], [20.0, 20.0], [20.0, 40.0], [0.0, 40.0]];
+    list.push((
+        "disc",
+        loops_of(vec![circle([0.0; 2], 20.0, 126, false)], h),
+    ));
+    let l = [
+        [0.0, 0.0],
+        [40.0, 0.0],
+        [40.0, 20.0],
+        [20.0, 20.0],
+        [20.0, 40.0],
+        [0.0, 40.0],
+    ];
     list.push(("ell", loops_of(vec![turned(sides(&l, h), 30.0)], h)));
-    let w = [[0.0, 0.0], [60.0, 0.0], [60.0, 60.0 * 30f64.to_radians().tan()]];
+    let w = [
+        [0.0, 0.0],
+        [60.0, 0.0],
+        [60.0, 60.0 * 30f64.to_radians().tan()],
+    ];
     list.push(("wedge", loops_of(vec![even(sides(&w, h), 0)], h)));
-    let mut s = even(sides(&[[0.0, 0.0], [36.0, 3.0], [33.0, 30.0], [-4.0, 26.0]], h), 0);
-    slit(&mut s, 10, &[[11.0, 2.0], [11.6, 2.9], [12.1, 3.8], [12.6, 4.7], [13.1, 5.6], [13.6, 6.5], [14.1, 7.3]]);
-    let free: Vec<Xy> = (0..9).map(|k| [6.0 + 0.98 * k as f64, 14.0 + 0.31 * k as f64]).collect();
+    let mut s = even(
+        sides(&[[0.0, 0.0], [36.0, 3.0], [33.0, 30.0], [-4.0, 26.0]], h),
+        0,
+    );
+    slit(
+        &mut s,
+        10,
+        &[
+            [11.0, 2.0],
+            [11.6, 2.9],
+            [12.1, 3.8],
+            [12.6, 4.7],
+            [13.1, 5.6],
+            [13.6, 6.5],
+            [14.1, 7.3],
+        ],
+    );
+    let free: Vec<Xy> = (0..9)
+        .map(|k| [6.0 + 0.98 * k as f64, 14.0 + 0.31 * k as f64])
+        .collect();
     let mut ring = free.clone();
     ring.extend(free[1..8].iter().rev());
     list.push(("slits", loops_of(vec![s, ring], h)));
     list.push((
         "annulus",
-        loops_of(vec![circle([0.0; 2], 20.0, 126, false), circle([5.0, 3.0], 7.0, 44, true)], h),
+        loops_of(
+            vec![
+                circle([0.0; 2], 20.0, 126, false),
+                circle([5.0, 3.0], 7.0, 44, true),
+            ],
+            h,
+        ),
     ));
     list.push((
         "odd island",
-        loops_of(vec![circle([0.0; 2], 20.0, 125, false), circle([3.0, 2.0], 4.0, 25, true)], h),
+        loops_of(
+            vec![
+                circle([0.0; 2], 20.0, 125, false),
+                circle([3.0, 2.0], 4.0, 25, true),
+            ],
+            h,
+        ),
     ));
     list.push(("ring cut", ring_cut(40)));
     list.push(("seams", seams(0.0)));
@@ -181,9 +243,19 @@ fn drafts_are_sound() {
         let visits = Visits::of(&loops);
         let draft = strip::mesh(&visits, &loops).expect(name);
         assert_sound(&draft, &visits);
-        println!("DRAFT {name} visits {} quads {} settled {} nodes {}", visits.len(), draft.quads.len(), draft.settled, draft.nodes.len());
-        for p in &draft.nodes { println!("N {} {}", p[0], p[1]); }
-        for q in &draft.quads { println!("Q {} {} {} {}", q[0], q[1], q[2], q[3]); }
+        println!(
+            "DRAFT {name} visits {} quads {} settled {} nodes {}",
+            visits.len(),
+            draft.quads.len(),
+            draft.settled,
+            draft.nodes.len()
+        );
+        for p in &draft.nodes {
+            println!("N {} {}", p[0], p[1]);
+        }
+        for q in &draft.quads {
+            println!("Q {} {} {} {}", q[0], q[1], q[2], q[3]);
+        }
     }
 }
 
@@ -195,7 +267,12 @@ fn bench_disc() {
         let visits = Visits::of(&loops);
         let t = std::time::Instant::now();
         let draft = strip::mesh(&visits, &loops).expect("disc");
-        println!("BENCH r {r} quads {} settled {} in {:?}", draft.quads.len(), draft.settled, t.elapsed());
+        println!(
+            "BENCH r {r} quads {} settled {} in {:?}",
+            draft.quads.len(),
+            draft.settled,
+            t.elapsed()
+        );
     }
 }
 
@@ -223,7 +300,12 @@ fn rough(seed: u64) -> Loops {
     for k in 0..seed % 4 {
         let a = TAU * k as f64 / 4.0;
         let at = [0.45 * radius * a.cos(), 0.45 * radius * a.sin()];
-        walks.push(star(at, 0.2 * radius, 3 + ((seed / 4 + k) % 9) as usize, -1.0));
+        walks.push(star(
+            at,
+            0.2 * radius,
+            3 + ((seed / 4 + k) % 9) as usize,
+            -1.0,
+        ));
     }
     let total: usize = walks.iter().map(Vec::len).sum();
     if total % 2 == 1 {

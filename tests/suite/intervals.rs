@@ -1,1 +1,130 @@
 //! Tests of `intervals`.
+
+use polder::domain::line::Domain;
+use polder::domain::line::Line;
+use polder::domain::line::Role;
+use polder::domain::size::SizeWish;
+use polder::geometry::grid::Grid;
+use polder::geometry::point::Point;
+use polder::intervals;
+use polder::intervals::Options;
+use polder::intervals::check::check;
+use polder::intervals::goals::Goals;
+use polder::noding;
+use polder::noding::arrangement::Arrangement;
+use polder::partition;
+use polder::partition::subdomains::Partition;
+use proptest::prelude::*;
+
+const OPTIONS: Options = Options {
+    corner_deg: 30.0,
+    upper_ratio: 2.5,
+};
+
+/// A boundary ring and lines of kind 1 (`fine`) on a grid of 1 m, noded and walked.
+pub fn walked(ring: &[(i32, i32)], lines: &[Vec<(i32, i32)>]) -> (Domain, Arrangement, Partition) {
+    let line = |source: usize, points: &[(i32, i32)]| Line {
+        source: source as u32,
+        role: if source == 0 {
+            Role::Boundary
+        } else {
+            Role::Constraint
+        },
+        kind: u16::from(source > 0),
+        name: String::new(),
+        points: points.iter().map(|&(x, y)| Point::new(x, y)).collect(),
+    };
+    let all = std::iter::once(ring).chain(lines.iter().map(Vec::as_slice));
+    let domain = Domain {
+        grid: Grid {
+            origin_m: [0.0, 0.0],
+            cell_m: 1.0,
+        },
+        epsg: None,
+        kinds: vec![String::new(), "fine".into()],
+        lines: all
+            .enumerate()
+            .map(|(source, points)| line(source, points))
+            .collect(),
+        digest: 0,
+    };
+    let noded = noding::node(
+        &domain,
+        &noding::Options {
+            tile_cells: 1 << 20,
+        },
+    );
+    let (arrangement, _) = noding::clip(&domain, noded);
+    let options = partition::Options {
+        corner_deg: 30.0,
+        tile_cells: 1 << 20,
+    };
+    let partition = partition::partition(&domain, &arrangement, &options).unwrap();
+    (domain, arrangement, partition)
+}
+
+fn planned(ring: &[(i32, i32)], lines: &[Vec<(i32, i32)>], sizes: [f64; 2]) -> (Partition, Goals) {
+    let (domain, arrangement, partition) = walked(ring, lines);
+    let sizes = SizeWish {
+        default_m: sizes[0],
+        by_kind_m: sizes.to_vec(),
+    };
+    let goals = intervals::plan(&domain, &sizes, &arrangement, &partition, &OPTIONS);
+    check(&partition, &goals).unwrap();
+    (partition, goals)
+}
+
+const SQUARE: [(i32, i32); 5] = [(0, 0), (100, 0), (100, 100), (0, 100), (0, 0)];
+
+#[test]
+fn a_goal_is_length_over_size() {
+    let (_, goals) = planned(&SQUARE, &[], [10.0, 10.0]);
+    let all: f64 = goals.goal.iter().sum();
+    assert_eq!(all, 40.0);
+}
+
+#[test]
+fn the_smallest_size_of_an_edge_counts() {
+    let (_, goals) = planned(&SQUARE, &[vec![(0, 0), (100, 0)]], [10.0, 4.0]);
+    let all: f64 = goals.goal.iter().sum();
+    assert_eq!(all, 25.0 + 30.0);
+}
+
+#[test]
+fn each_edge_of_a_chain_needs_an_interval() {
+    let bend = vec![(0, 50), (40, 50), (50, 51), (60, 50), (100, 50)];
+    let (partition, goals) = planned(&SQUARE, &[bend], [1000.0, 1000.0]);
+    let chain = partition
+        .curves
+        .iter()
+        .position(|curve| curve.edges.len() == 4);
+    assert_eq!(goals.lower[chain.unwrap()], 4);
+}
+
+#[test]
+fn triangles_get_two_on_each_side() {
+    let (partition, goals) = planned(&SQUARE, &[vec![(0, 0), (100, 100)]], [1000.0, 1000.0]);
+    assert_eq!(partition.subdomains.len(), 2);
+    let total: u32 = goals.lower.iter().sum();
+    // Each of the five sides, unless curves pass a corner of the square.
+    assert_eq!(total, 10);
+}
+
+#[test]
+fn small_squares_keep_one_on_each_side() {
+    let (_, goals) = planned(&SQUARE, &[], [1000.0, 1000.0]);
+    assert_eq!(goals.lower.iter().sum::<u32>(), 4);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    #[test]
+    fn goals_are_sound_on_random_lines(
+        lines in prop::collection::vec(
+            prop::collection::vec((-20_i32..120, -20_i32..120), 2..5), 0..8),
+        size in 1.0_f64..200.0,
+    ) {
+        planned(&SQUARE, &lines, [size, 0.5 * size]);
+    }
+}

@@ -10,7 +10,10 @@ use polder::meshing::patch::Loops;
 use polder::meshing::patch::Method;
 
 fn options(methods: &[Method]) -> Options {
-    Options { methods: methods.to_vec(), good_enough: 0.95 }
+    Options {
+        methods: methods.to_vec(),
+        good_enough: 0.95,
+    }
 }
 
 /// Meshes and checks every promise.
@@ -34,7 +37,11 @@ fn named_shapes_keep_all_promises() {
 #[test]
 fn random_shapes_keep_all_promises() {
     for seed in 0..200 {
-        verify(&format!("random {seed}"), &cases::cruel(seed), &[Method::Indirect]);
+        verify(
+            &format!("random {seed}"),
+            &cases::cruel(seed),
+            &[Method::Indirect],
+        );
     }
 }
 

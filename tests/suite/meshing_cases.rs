@@ -94,8 +94,17 @@ impl Draw {
             walks.push(walk);
         }
         walks.sort_by(|a, b| self.area(b).total_cmp(&self.area(a)));
-        let on_seam = walks.iter().map(|walk: &Vec<u32>| vec![false; walk.len()]).collect();
-        Loops { nodes: self.nodes, walks, size_m, lattice_origin: None, on_seam }
+        let on_seam = walks
+            .iter()
+            .map(|walk: &Vec<u32>| vec![false; walk.len()])
+            .collect();
+        Loops {
+            nodes: self.nodes,
+            walks,
+            size_m,
+            lattice_origin: None,
+            on_seam,
+        }
     }
 
     fn halve_longest(&mut self) {
@@ -105,7 +114,9 @@ impl Draw {
         };
         let single = |&&(a, b): &&(u32, u32)| !self.edges.contains(&(b, a));
         let longest = self.edges.iter().filter(single);
-        let &(a, b) = longest.max_by(|x, y| length(x).total_cmp(&length(y))).unwrap();
+        let &(a, b) = longest
+            .max_by(|x, y| length(x).total_cmp(&length(y)))
+            .unwrap();
         let (p, q) = (self.nodes[a as usize], self.nodes[b as usize]);
         let middle = self.node([0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])]);
         self.edges.retain(|&edge| edge != (a, b));
@@ -119,8 +130,17 @@ impl Draw {
             (q[1] - p[1]).atan2(q[0] - p[0])
         };
         let back = angle(from);
-        let turn = |&end: &u32| if end == from { TAU } else { (back - angle(end)).rem_euclid(TAU) };
-        *ends.iter().min_by(|a, b| turn(a).total_cmp(&turn(b))).unwrap()
+        let turn = |&end: &u32| {
+            if end == from {
+                TAU
+            } else {
+                (back - angle(end)).rem_euclid(TAU)
+            }
+        };
+        *ends
+            .iter()
+            .min_by(|a, b| turn(a).total_cmp(&turn(b)))
+            .unwrap()
     }
 
     fn area(&self, walk: &[u32]) -> f64 {
@@ -137,7 +157,11 @@ pub fn cruel(seed: u64) -> Loops {
     let random = &mut Random(seed);
     let corners = 3 + random.below(12);
     let extent = [10.0, 20.0, 50.0, 120.0][random.below(4)];
-    let grade = if random.unit() < 0.3 { random.between(1.0, 20.0) } else { 1.0 };
+    let grade = if random.unit() < 0.3 {
+        random.between(1.0, 20.0)
+    } else {
+        1.0
+    };
     star(random, corners, extent, grade)
 }
 
@@ -160,8 +184,9 @@ fn star(random: &mut Random, corners: usize, extent: f64, grade: f64) -> Loops {
     let roughness = random.unit();
     let ray = |angle: f64, r: f64| [shift[0] + r * angle.cos(), shift[1] + r * angle.sin()];
     let angle = |k: f64| start + TAU * k / corners as f64;
-    let reach: Vec<f64> =
-        (0..corners).map(|_| extent * random.between(1.0 - 0.75 * roughness, 1.0)).collect();
+    let reach: Vec<f64> = (0..corners)
+        .map(|_| extent * random.between(1.0 - 0.75 * roughness, 1.0))
+        .collect();
     let corner = |k: usize| ray(angle(k as f64), reach[k]);
     let mut draw = Draw::default();
     let outline: Vec<Xy> = (0..corners).map(corner).collect();
@@ -171,7 +196,9 @@ fn star(random: &mut Random, corners: usize, extent: f64, grade: f64) -> Loops {
     }
     for k in 0..corners {
         // The polygon holds the disc of this radius in the sector around corner k.
-        let inner = reach[k].min(reach[(k + 1) % corners]).min(reach[(k + corners - 1) % corners])
+        let inner = reach[k]
+            .min(reach[(k + 1) % corners])
+            .min(reach[(k + corners - 1) % corners])
             * (std::f64::consts::PI / corners as f64).cos()
             * 0.55;
         let (from, to) = (0.35 * inner, inner);
@@ -186,7 +213,13 @@ fn star(random: &mut Random, corners: usize, extent: f64, grade: f64) -> Loops {
             }
             3 => draw.line(&[ray(a, from), ray(a + wing, to)], &spacing, true),
             4 => {
-                let hole = [ray(a, from), ray(a + wing, to), ray(a, 0.8 * to), ray(a - wing, to)];
+                let half = 0.5 * (from + to);
+                let hole = [
+                    ray(a, from),
+                    ray(a + wing, half),
+                    ray(a, to),
+                    ray(a - wing, half),
+                ];
                 draw.ring(&hole, &spacing);
             }
             5 => {
@@ -222,22 +255,57 @@ pub fn named() -> Vec<(&'static str, Loops)> {
         draw
     };
     let tip = 5.0_f64.to_radians();
-    add("wedge of 5 degrees", polygon(&[[0.0, 0.0], [100.0, 0.0], [100.0, 100.0 * tip.tan()]]));
-    add("wedge of 1 degree", polygon(&[[0.0, 0.0], [60.0, 0.0], [60.0, 1.05]]));
-    add("triangle of four edges", polygon(&[[0.0, 0.0], [16.0, 0.0], [8.0, 9.0]]));
-    add("thin band", polygon(&[[0.0, 0.0], [200.0, 0.0], [200.0, 1.0], [0.0, 1.0]]));
+    add(
+        "wedge of 5 degrees",
+        polygon(&[[0.0, 0.0], [100.0, 0.0], [100.0, 100.0 * tip.tan()]]),
+    );
+    add(
+        "wedge of 1 degree",
+        polygon(&[[0.0, 0.0], [60.0, 0.0], [60.0, 1.05]]),
+    );
+    add(
+        "triangle of four edges",
+        polygon(&[[0.0, 0.0], [16.0, 0.0], [8.0, 9.0]]),
+    );
+    add(
+        "thin band",
+        polygon(&[[0.0, 0.0], [200.0, 0.0], [200.0, 1.0], [0.0, 1.0]]),
+    );
     let mut comb = vec![[0.0, -20.0], [100.0, -20.0]];
     for k in (0..5).rev() {
         let x = 20.0 * f64::from(k);
-        comb.extend([[x + 20.0, 60.0], [x + 11.0, 60.0], [x + 10.0, 0.0], [x + 9.0, 60.0]]);
+        comb.extend([
+            [x + 20.0, 60.0],
+            [x + 11.0, 60.0],
+            [x + 10.0, 0.0],
+            [x + 9.0, 60.0],
+        ]);
         comb.push([x + 1.0, 60.0]);
     }
     add("comb", polygon(&comb));
-    add("slit", with_lines(&square(60.0), &[&[[60.0, 30.0], [20.0, 30.0]]]));
-    let side = [[0.0, 0.0], [60.0, 0.0], [60.0, 3.0], [60.0, 60.0], [0.0, 60.0]];
-    add("slit near a side", with_lines(&side, &[&[[60.0, 3.0], [20.0, 3.0]]]));
-    add("isolated line of one edge", with_lines(&square(40.0), &[&[[15.0, 20.0], [25.0, 20.0]]]));
-    add("line in a tight box", with_lines(&square(12.0), &[&[[4.0, 6.0], [8.0, 6.0]]]));
+    add(
+        "slit",
+        with_lines(&square(60.0), &[&[[60.0, 30.0], [20.0, 30.0]]]),
+    );
+    let side = [
+        [0.0, 0.0],
+        [60.0, 0.0],
+        [60.0, 3.0],
+        [60.0, 60.0],
+        [0.0, 60.0],
+    ];
+    add(
+        "slit near a side",
+        with_lines(&side, &[&[[60.0, 3.0], [20.0, 3.0]]]),
+    );
+    add(
+        "isolated line of one edge",
+        with_lines(&square(40.0), &[&[[15.0, 20.0], [25.0, 20.0]]]),
+    );
+    add(
+        "line in a tight box",
+        with_lines(&square(12.0), &[&[[4.0, 6.0], [8.0, 6.0]]]),
+    );
     let rays: Vec<[Xy; 2]> = (0..24)
         .map(|k| {
             let a = TAU * f64::from(k) / 24.0;
@@ -262,7 +330,10 @@ pub fn named() -> Vec<(&'static str, Loops)> {
     kissing.ring(&[[40.0, 40.0], [30.0, 20.0], [20.0, 30.0]], &even);
     add("hole that touches a corner", kissing);
     add("one quad", polygon(&square(10.0)));
-    add("one bent quad", polygon(&[[0.0, 0.0], [10.0, 0.0], [3.0, 3.0], [0.0, 10.0]]));
+    add(
+        "one bent quad",
+        polygon(&[[0.0, 0.0], [10.0, 0.0], [3.0, 3.0], [0.0, 10.0]]),
+    );
     add("disc", polygon(&circle(100.0, 62, 1.0)));
     cases
 }

@@ -1,0 +1,138 @@
+//! The mesh edges of each line, in the order and direction in which it was digitised.
+
+use crate::chunk::views::FrameView;
+
+/// One mesh edge that represents a stretch of a line, in the line's direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// Global id of the node where the stretch begins.
+    pub from: u32,
+    /// Global id of the node where it ends.
+    pub to: u32,
+    /// Station of the begin, metres along the line as read.
+    pub from_m: f64,
+    /// Station of the end; not below `from_m`.
+    pub to_m: f64,
+    /// The curve that the edge lies on.
+    pub curve: u32,
+    /// True if the line runs along the curve, false if against it.
+    pub forward: bool,
+}
+
+/// The steps of all lines. 8 bytes a piece.
+#[derive(Clone, Debug)]
+pub struct LineEdges<'a> {
+    frame: FrameView<'a>,
+    /// Line -> pieces, CSR.
+    start: Vec<u32>,
+    /// Line by line: row of the piece.
+    piece: Vec<u32>,
+    /// Line by line: row of the edge's first node in `curve_nodes`.
+    entry: Vec<u32>,
+    /// The curve of each edge follows from this by search.
+    curve_start: &'a [u32],
+}
+
+impl<'a> LineEdges<'a> {
+    /// Sorts the pieces of `frame` by their line, of which there are `lines`. O(pieces).
+    pub fn of(frame: FrameView<'a>, lines: usize) -> LineEdges<'a> {
+        let mut start = vec![0_u32; lines + 1];
+        for &line in frame.piece_line {
+            start[line as usize + 1] += 1;
+        }
+        for line in 0..lines {
+            start[line + 1] += start[line];
+        }
+        let mut next = start.clone();
+        let mut piece = vec![0_u32; frame.piece_line.len()];
+        let mut entry = vec![0_u32; frame.piece_line.len()];
+        for curve in 0..frame.curves() {
+            for edge in frame.edges_of(curve) {
+                for row in frame.pieces_of(edge) {
+                    let slot = &mut next[frame.piece_line[row] as usize];
+                    piece[*slot as usize] = row as u32;
+                    entry[*slot as usize] = (edge + curve) as u32;
+                    *slot += 1;
+                }
+            }
+        }
+        LineEdges {
+            frame,
+            start,
+            piece,
+            entry,
+            curve_start: frame.curve_start,
+        }
+    }
+
+    fn step(&self, slot: usize) -> Step {
+        let (row, entry) = (self.piece[slot] as usize, self.entry[slot] as usize);
+        let curve = self.curve_start.partition_point(|&s| s as usize <= entry) - 1;
+        let [a, b] = [0, 1].map(|k| self.frame.curve_nodes[entry + k]);
+        let [p, q] = [self.frame.piece_from_m[row], self.frame.piece_to_m[row]];
+        let forward = p <= q;
+        let (from, to, from_m, to_m) = if forward { (a, b, p, q) } else { (b, a, q, p) };
+        Step {
+            from,
+            to,
+            from_m,
+            to_m,
+            curve: curve as u32,
+            forward,
+        }
+    }
+
+    /// The connected chains of `line`, each in digitised order. A chain ends where nothing that
+    /// follows begins at its last node: at a stretch that was dropped.
+    pub fn chains_of(&self, line: usize) -> Vec<Vec<Step>> {
+        let slots = self.start[line] as usize..self.start[line + 1] as usize;
+        let mut steps: Vec<Step> = slots.map(|slot| self.step(slot)).collect();
+        steps.sort_by(|a, b| {
+            (a.from_m.total_cmp(&b.from_m))
+                .then(a.to_m.total_cmp(&b.to_m))
+                .then((a.from, a.to).cmp(&(b.from, b.to)))
+        });
+        order_points(&mut steps);
+        let mut chains: Vec<Vec<Step>> = Vec::new();
+        for step in steps {
+            match chains.last_mut() {
+                Some(chain) if chain[chain.len() - 1].to == step.from => chain.push(step),
+                _ => chains.push(vec![step]),
+            }
+        }
+        chains
+    }
+}
+
+/// Steps of no length (several mesh edges for one point of the line, as where an end was joined to
+/// another line) have no direction and no order of their own: each takes that which goes on from
+/// the step before, or leads to the one after.
+fn order_points(steps: &mut [Step]) {
+    let is_point = |s: &Step| s.from_m == s.to_m;
+    let turn = |s: &mut Step| {
+        std::mem::swap(&mut s.from, &mut s.to);
+        s.forward = !s.forward;
+    };
+    for k in 0..steps.len() {
+        if !is_point(&steps[k]) {
+            continue;
+        }
+        let group = (steps[k..].iter())
+            .take_while(|s| is_point(s) && s.from_m == steps[k].from_m)
+            .count();
+        let before = (k > 0).then(|| steps[k - 1].to);
+        let fits = |s: &Step| before.is_some_and(|node| s.from == node || s.to == node);
+        if let Some(found) = (k..k + group).find(|&j| fits(&steps[j])) {
+            steps.swap(k, found);
+            if Some(steps[k].from) != before {
+                turn(&mut steps[k]);
+            }
+        } else if k == 0 {
+            // The first step of the line: it must lead to what comes after.
+            let after = steps.get(k + 1).copied();
+            if after.is_some_and(|s| s.from == steps[k].from) {
+                turn(&mut steps[k]);
+            }
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! What two patches share: boundary nodes, curves, pieces, sub-domains, the certificate.
+
+use crate::geometry::point::Xy;
+use crate::intervals::goals::Goals;
+use crate::noding::arrangement::Piece;
+use crate::parity::balance::Balance;
+use crate::parity::programme::COST_UNIT;
+use crate::partition::subdomains::Subdomain;
+use crate::partition::subdomains::SubdomainId;
+
+/// Proof of how good the interval counts are, in whole cost units; see `schemas/frame.fbs`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Certificate {
+    /// One cost unit.
+    pub cost_unit: f64,
+    /// Cost of the counts.
+    pub objective: i64,
+    /// Cost if each curve took its own cheapest count.
+    pub base: i64,
+    /// Lower bound of the cost of any counts that make every sub-domain even.
+    pub bound: i64,
+    /// The optimum that HiGHS claims, if it was asked; as a cost, not in units.
+    pub claimed: Option<f64>,
+    /// Odd set -> the next larger set around it, or `u32::MAX`; parents precede children.
+    pub set_parent: Vec<u32>,
+    /// Odd set -> twice its dual, positive.
+    pub set_dual2: Vec<i64>,
+    /// Sub-domain -> the least set that holds it, or `u32::MAX`.
+    pub set_of: Vec<u32>,
+}
+
+impl From<Balance> for Certificate {
+    fn from(balance: Balance) -> Certificate {
+        // Costs in a balance are whole multiples of the unit.
+        let units = |cost: f64| (cost / COST_UNIT).round() as i64;
+        Certificate {
+            cost_unit: COST_UNIT,
+            objective: units(balance.objective),
+            base: units(balance.base),
+            bound: units(balance.bound),
+            claimed: balance.claimed,
+            set_parent: balance.cuts.parent,
+            set_dual2: balance.cuts.value2,
+            set_of: balance.cuts.set_of,
+        }
+    }
+}
+
+/// The frame of a mesh, with all its nodes on curves.
+///
+/// Global ids of boundary nodes are their rows in `nodes`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frame {
+    /// Boundary nodes, local metres.
+    pub nodes: Vec<Xy>,
+    /// How many of them (the first ones) are nodes of the cleaned arrangement; the others were
+    /// placed between them.
+    pub fixed_nodes: u32,
+    /// `curve_nodes[curve_start[c]..curve_start[c + 1]]` are the nodes of curve `c` in order, both
+    /// ends included.
+    pub curve_start: Vec<u32>,
+    /// Node ids, curve by curve.
+    pub curve_nodes: Vec<u32>,
+    /// Sub-domain on the left of each curve.
+    pub left: Vec<SubdomainId>,
+    /// Sub-domain on the right of each curve.
+    pub right: Vec<SubdomainId>,
+    /// True for curves that were added to cut a large sub-domain.
+    pub is_seam: Vec<bool>,
+    /// `pieces[piece_start[e]..piece_start[e + 1]]` are the pieces of edge `e`, where edge `k` of
+    /// curve `c` is `e = curve_start[c] - c + k`. Stations run in the direction of the curve.
+    pub piece_start: Vec<u32>,
+    /// Pieces, edge by edge.
+    pub pieces: Vec<Piece>,
+    /// The sub-domains with their walks over these curves.
+    pub subdomains: Vec<Subdomain>,
+    /// Wished edge length inside each sub-domain, metres.
+    pub size_m: Vec<f64>,
+    /// What the sizes wished of each curve.
+    pub goals: Goals,
+    /// How good the counts are.
+    pub certificate: Option<Certificate>,
+}

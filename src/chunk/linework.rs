@@ -1,0 +1,22 @@
+//! The line work as read and what became of it, as handed to the writer.
+
+use crate::cleanup::changes::Change;
+use crate::cleanup::changes::Dropped;
+use crate::cleanup::changes::Tally;
+use crate::domain::finding::Finding;
+use crate::domain::line::Domain;
+
+/// All that `lines` holds. Borrowed: the pipeline has these anyway.
+#[derive(Clone, Copy, Debug)]
+pub struct LineWork<'a> {
+    /// The lines and rings as read.
+    pub domain: &'a Domain,
+    /// Stretches of lines that are not in the mesh.
+    pub dropped: &'a [Dropped],
+    /// Where the topology was changed.
+    pub changes: &'a [Change],
+    /// How often, and how far things moved.
+    pub tally: &'a Tally,
+    /// What is wrong with the input.
+    pub findings: &'a [Finding],
+}

@@ -1,0 +1,159 @@
+//! GeoJSON of every source line: as meshed, or as cleaned.
+
+use crate::chunk::chains::LineEdges;
+use crate::chunk::chains::Step;
+use crate::chunk::reader::Mesh;
+use crate::chunk::views::FrameView;
+use crate::chunk::views::LinesView;
+use crate::export::Stats;
+use crate::export::destination::Destination;
+use crate::export::error::Error;
+use crate::geometry::point::Xy;
+use crate::partition::subdomains::OUTSIDE;
+use std::io;
+use std::io::Write;
+
+/// Which nodes a line is drawn through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Along {
+    /// All nodes of its mesh edges.
+    MeshNodes,
+    /// Those that the cleaned line work has; the others lie on straight edges between them.
+    CleanedNodes,
+}
+
+pub(crate) fn write(mesh: &Mesh, to: &mut Destination, along: Along) -> Result<Stats, Error> {
+    let (frame, lines) = (mesh.frame(), mesh.lines());
+    let edges = LineEdges::of(frame, lines.lines());
+    let draw = Drawing {
+        frame,
+        lines,
+        origin_m: mesh.index().grid.origin_m,
+        along,
+    };
+    let mut features = 0;
+    to.write(|file| open_collection(file, mesh.index().epsg))?;
+    for line in (0..lines.lines()).filter(|&line| lines.role[line] == 0) {
+        for chain in edges.chains_of(line) {
+            to.write(|file| {
+                separate(file, &mut features)?;
+                draw.feature(file, line, &chain)
+            })?;
+        }
+    }
+    to.write(|file| writeln!(file, "\n]}}"))?;
+    Ok(Stats {
+        features,
+        ..Stats::default()
+    })
+}
+
+/// The head of a feature collection, with the reference system where GDAL and QGIS look for it.
+pub(crate) fn open_collection(file: &mut dyn Write, epsg: Option<u32>) -> io::Result<()> {
+    writeln!(file, "{{\"type\":\"FeatureCollection\",")?;
+    if let Some(epsg) = epsg {
+        writeln!(
+            file,
+            "\"crs\":{{\"type\":\"name\",\"properties\":{{\"name\":\"urn:ogc:def:crs:EPSG::{epsg}\"}}}},"
+        )?;
+    }
+    write!(file, "\"features\":[")
+}
+
+/// The comma before all features but the first.
+pub(crate) fn separate(file: &mut dyn Write, features: &mut u64) -> io::Result<()> {
+    *features += 1;
+    writeln!(file, "{}", if *features > 1 { "," } else { "" })
+}
+
+/// `text` as JSON.
+pub(crate) fn quoted(text: &str) -> String {
+    serde_json::Value::from(text).to_string()
+}
+
+/// `[[x, y], ..]`. Numbers are the shortest that read back as the same bits.
+pub(crate) fn coordinates(file: &mut dyn Write, places: &[Xy], origin_m: Xy) -> io::Result<()> {
+    write!(file, "[")?;
+    for (k, p) in places.iter().enumerate() {
+        let comma = if k > 0 { "," } else { "" };
+        write!(
+            file,
+            "{comma}[{},{}]",
+            p[0] + origin_m[0],
+            p[1] + origin_m[1]
+        )?;
+    }
+    write!(file, "]")
+}
+
+struct Drawing<'a> {
+    frame: FrameView<'a>,
+    lines: LinesView<'a>,
+    origin_m: Xy,
+    along: Along,
+}
+
+impl Drawing<'_> {
+    fn feature(&self, file: &mut dyn Write, line: usize, chain: &[Step]) -> io::Result<()> {
+        write!(
+            file,
+            "{{\"type\":\"Feature\",\"properties\":{{\"source\":{},\"kind\":{},\"name\":{},",
+            self.lines.source[line],
+            quoted(self.lines.kind(line)),
+            quoted(self.lines.name(line))
+        )?;
+        let (from_m, to_m) = (chain[0].from_m, chain[chain.len() - 1].to_m);
+        write!(file, "\"from_m\":{from_m:.3},\"to_m\":{to_m:.3},")?;
+        self.sides(file, chain)?;
+        write!(
+            file,
+            "}},\"geometry\":{{\"type\":\"LineString\",\"coordinates\":"
+        )?;
+        let nodes = std::iter::once(chain[0].from).chain(chain.iter().map(|step| step.to));
+        let last = chain.len();
+        let places: Vec<Xy> = (nodes.enumerate())
+            .filter(|&(k, node)| {
+                // The ends stay, whatever they are.
+                self.along == Along::MeshNodes
+                    || k == 0
+                    || k == last
+                    || node < self.frame.fixed_nodes
+            })
+            .map(|(_, node)| self.frame.nodes[node as usize])
+            .collect();
+        coordinates(file, &places, self.origin_m)?;
+        write!(file, "}}}}")
+    }
+
+    /// The sub-domains left and right of the chain, run by run: `left[i]` and `right[i]` hold for
+    /// `edges[i]` mesh edges; null is the outside.
+    fn sides(&self, file: &mut dyn Write, chain: &[Step]) -> io::Result<()> {
+        let sides_of = |step: &Step| {
+            let curve = step.curve as usize;
+            let (left, right) = (self.frame.left[curve], self.frame.right[curve]);
+            if step.forward {
+                (left, right)
+            } else {
+                (right, left)
+            }
+        };
+        let runs: Vec<((u32, u32), usize)> = chain
+            .chunk_by(|a, b| sides_of(a) == sides_of(b))
+            .map(|run| (sides_of(&run[0]), run.len()))
+            .collect();
+        let name = |side: u32| match side {
+            OUTSIDE => "null".to_string(),
+            side => side.to_string(),
+        };
+        let list = |pick: &dyn Fn(&((u32, u32), usize)) -> String| {
+            runs.iter().map(pick).collect::<Vec<String>>().join(",")
+        };
+        write!(
+            file,
+            "\"left\":[{}],\"right\":[{}],\"edges\":[{}]",
+            list(&|run| name(run.0.0)),
+            list(&|run| name(run.0.1)),
+            list(&|run| run.1.to_string())
+        )
+    }
+}

@@ -1,0 +1,140 @@
+//! What a build made and what a plan foresees, in numbers.
+
+use crate::check::verdict::Verdict;
+use crate::pipeline::job::Job;
+use crate::pipeline::plan::Plan;
+use crate::pipeline::progress::StageTime;
+use std::collections::BTreeMap;
+
+/// What a build made.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Wall time by stage.
+    pub stages: Vec<StageTime>,
+    /// Every promise, and the quality.
+    pub verdict: Verdict,
+    /// Sub-domains, parts of cut ones counted each.
+    pub subdomains: usize,
+    /// Curves between junctions.
+    pub curves: usize,
+    /// Largest displacement of any line, metres.
+    pub displacement_max_m: f64,
+    /// 99 % quantile of the displacement, by length, metres.
+    pub displacement_p99_m: f64,
+    /// Length of constraint lines inside the domain, metres.
+    pub length_m: f64,
+    /// Length dropped of it, metres.
+    pub length_dropped_m: f64,
+    /// Gap of the integer programme.
+    pub ilp_gap: f64,
+    /// Share of odd counts among all curves.
+    pub odd_share: f64,
+    /// Largest patch over the seam budget.
+    pub largest_patch_over_budget: f64,
+    /// How often each kind of finding was made.
+    pub findings: BTreeMap<&'static str, usize>,
+    /// Largest resident memory of the process, bytes; 0 where the system does not say.
+    pub peak_memory_bytes: u64,
+}
+
+impl Outcome {
+    /// Gathers the numbers of a finished build.
+    pub(super) fn new(
+        job: &Job,
+        plan: &Plan,
+        findings: &[crate::domain::finding::Finding],
+        verdict: Verdict,
+        stages: Vec<StageTime>,
+    ) -> Outcome {
+        let mut by_kind = BTreeMap::new();
+        for finding in findings {
+            *by_kind.entry(finding.what).or_insert(0) += 1;
+        }
+        let budget = f64::from(job.seam_budget_quads);
+        Outcome {
+            stages,
+            subdomains: plan.partition.subdomains.len(),
+            curves: plan.partition.curves.len(),
+            displacement_max_m: plan.tally.displacement_max_m,
+            displacement_p99_m: plan.tally.displacement_p99_m,
+            length_m: plan.tally.length_m,
+            length_dropped_m: plan.tally.length_dropped_m,
+            ilp_gap: plan.balance.gap(),
+            odd_share: plan.balance.odd_share,
+            largest_patch_over_budget: verdict.quality.largest_patch.0 as f64 / budget,
+            findings: by_kind,
+            peak_memory_bytes: peak_memory_bytes(),
+            verdict,
+        }
+    }
+
+    /// Wall time of all stages, seconds.
+    pub fn seconds(&self) -> f64 {
+        self.stages.iter().map(|it| it.seconds).sum()
+    }
+}
+
+/// What a build of a plan will cost.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// Quads, from areas and sizes.
+    pub quads: u64,
+    /// Nodes on lines.
+    pub boundary_nodes: u64,
+    /// Sub-domains.
+    pub subdomains: usize,
+    /// Peak memory, bytes: the plan's own plus patches in flight.
+    pub memory_bytes: u64,
+    /// The mesh folder, bytes.
+    pub disk_bytes: u64,
+    /// Wall time of the whole build, seconds.
+    pub seconds: f64,
+    /// Wall time by stage of the plan alone.
+    pub stages: Vec<StageTime>,
+}
+
+/// Disk that a quad takes: four local ids and about one interior node of two f64, bytes.
+const BYTES_A_QUAD: f64 = 32.0;
+
+/// Disk that a node on a line takes in the frame: place, ids, pieces, bytes.
+const BYTES_A_BOUNDARY_NODE: f64 = 90.0;
+
+/// Time of a quad near a line and of one in a lattice core, on one core, seconds; measured on the
+/// shared cases, good to a factor of two.
+const SECONDS_A_QUAD: [f64; 2] = [60e-6, 1e-6];
+
+/// Rows of quads from a line that are not perfect lattice cells.
+const ROWS_NEAR_LINES: f64 = 8.0;
+
+impl Estimate {
+    /// The cost of `plan`, which itself took `stages`, on `workers` cores.
+    pub(super) fn new(plan: &Plan, stages: Vec<StageTime>, workers: usize) -> Estimate {
+        let quads = plan.quads_expected();
+        let boundary_nodes = plan.first[plan.first.len() - 1];
+        let near = (boundary_nodes as f64 * ROWS_NEAR_LINES).min(quads as f64);
+        let far = quads as f64 - near;
+        let meshing = near * SECONDS_A_QUAD[0] + far * SECONDS_A_QUAD[1];
+        let planned: f64 = stages.iter().map(|it| it.seconds).sum();
+        let disk = quads as f64 * BYTES_A_QUAD + boundary_nodes as f64 * BYTES_A_BOUNDARY_NODE;
+        Estimate {
+            quads,
+            boundary_nodes,
+            subdomains: plan.partition.subdomains.len(),
+            // A chunk exists as records and as a buffer; the frame is built in memory.
+            memory_bytes: peak_memory_bytes()
+                + (3 * crate::chunk::CHUNK_BYTES) as u64
+                + boundary_nodes * BYTES_A_BOUNDARY_NODE as u64,
+            disk_bytes: disk as u64,
+            seconds: planned + meshing / workers as f64,
+            stages,
+        }
+    }
+}
+
+/// The process's largest resident memory so far, bytes; 0 where the system does not say.
+fn peak_memory_bytes() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|it| it.strip_prefix("VmHWM:"));
+    let kib = line.and_then(|it| it.trim().trim_end_matches("kB").trim().parse::<u64>().ok());
+    kib.unwrap_or(0) * 1024
+}

@@ -1,0 +1,272 @@
+//! Phases A and B: from a file to the plan of its mesh, all that the sub-domains share.
+
+use crate::boundary;
+use crate::boundary::walks::Site;
+use crate::cleanup;
+use crate::cleanup::changes::Change;
+use crate::cleanup::changes::Dropped;
+use crate::cleanup::changes::Reason;
+use crate::cleanup::changes::Tally;
+use crate::domain::finding::Finding;
+use crate::domain::line::Domain;
+use crate::domain::line::Role;
+use crate::domain::size::SizeWish;
+use crate::ingest;
+use crate::intervals;
+use crate::intervals::goals::Goals;
+use crate::noding;
+use crate::noding::arrangement::Arrangement;
+use crate::noding::arrangement::Piece;
+use crate::parity;
+use crate::parity::balance::Balance;
+use crate::partition::subdomains::Partition;
+use crate::pipeline::error::Error;
+use crate::pipeline::job::Job;
+use crate::pipeline::progress::Stopwatch;
+use crate::pipeline::tiles;
+
+/// The whole city before its sub-domains are meshed. Its size follows the input and the number of
+/// nodes on curves, never the number of quads.
+pub struct Plan {
+    /// The line work as read.
+    pub domain: Domain,
+    /// Wished sizes.
+    pub sizes: SizeWish,
+    /// The line work as meshed: noded, clipped, cleaned, with seams.
+    pub arrangement: Arrangement,
+    /// Its curves and sub-domains.
+    pub partition: Partition,
+    /// What sizes wish of each curve.
+    pub goals: Goals,
+    /// What each curve gets.
+    pub balance: Balance,
+    /// First global ids of nodes on curves.
+    pub first: Vec<u64>,
+    /// Stretches of lines that are not in the mesh.
+    pub dropped: Vec<Dropped>,
+    /// Where clean-up changed the topology.
+    pub changes: Vec<Change>,
+    /// How often and how far.
+    pub tally: Tally,
+    /// What a user should know.
+    pub findings: Vec<Finding>,
+}
+
+impl Plan {
+    /// What the walks of a sub-domain are made from.
+    pub fn site(&self) -> Site<'_> {
+        Site {
+            domain: &self.domain,
+            sizes: &self.sizes,
+            arrangement: &self.arrangement,
+            partition: &self.partition,
+            counts: &self.balance.counts,
+            first: &self.first,
+        }
+    }
+
+    /// Quads that the areas and sizes ask for: an estimate, made before any exists.
+    pub fn quads_expected(&self) -> u64 {
+        let cell_m2 = self.sizes.default_m * self.sizes.default_m;
+        let of = |area_m2: f64| (area_m2 / cell_m2).ceil() as u64;
+        (self.partition.subdomains.iter())
+            .map(|it| of(it.area_m2))
+            .sum()
+    }
+}
+
+/// The line work after phase A and clean-up.
+struct Cleaned {
+    arrangement: Arrangement,
+    dropped: Vec<Dropped>,
+    changes: Vec<Change>,
+    tally: Tally,
+}
+
+/// Makes the plan of `job`.
+pub(super) fn plan(job: &Job, watch: &Stopwatch) -> Result<Plan, Error> {
+    let mut findings = Vec::new();
+    let domain = read(job, watch, &mut findings)?;
+    let sizes = sizes(job, &domain)?;
+    let cleaned = clean(job, &domain, &sizes, watch, &mut findings)?;
+    let (arrangement, partition) = cut(
+        job,
+        &domain,
+        &sizes,
+        cleaned.arrangement,
+        watch,
+        &mut findings,
+    )?;
+    let (goals, balance) = balance(job, &domain, &sizes, &arrangement, &partition, watch)?;
+    let first = boundary::numbering(&partition, &balance.counts, arrangement.points.len());
+    let nodes = first[first.len() - 1];
+    if nodes >= u64::from(u32::MAX) {
+        return Err(Error::Job(format!(
+            "{nodes} nodes on lines do not fit 32 bits: choose a larger size or split the domain"
+        )));
+    }
+    Ok(Plan {
+        domain,
+        sizes,
+        arrangement,
+        partition,
+        goals,
+        balance,
+        first,
+        dropped: cleaned.dropped,
+        changes: cleaned.changes,
+        tally: cleaned.tally,
+        findings,
+    })
+}
+
+fn read(job: &Job, watch: &Stopwatch, findings: &mut Vec<Finding>) -> Result<Domain, Error> {
+    watch.stage("ingest", 1, |_| {
+        let options = ingest::Options {
+            cell_m: job.cell_m,
+            crs: job.crs,
+        };
+        let read = ingest::read(&job.input, &options)?;
+        let note = format!(
+            "{} lines, {} points",
+            read.domain.lines.len(),
+            read.points_read
+        );
+        findings.extend(read.findings);
+        Ok((read.domain, note))
+    })
+}
+
+/// The sizes of the job, by the kinds that the input has.
+fn sizes(job: &Job, domain: &Domain) -> Result<SizeWish, Error> {
+    let mut sizes = SizeWish::uniform(job.size_m, domain.kinds.len());
+    for (kind, size_m) in &job.sizes_m {
+        let known = domain.kinds.iter().position(|it| it == kind);
+        let Some(known) = known else {
+            return Err(Error::Job(format!(
+                "sizes.{kind}: the input has no lines of this kind; it has {}",
+                domain
+                    .kinds
+                    .iter()
+                    .filter(|it| !it.is_empty())
+                    .cloned()
+                    .collect::<Vec<_>>()
+                    .join(", ")
+            )));
+        };
+        sizes.by_kind_m[known] = *size_m;
+    }
+    let rim = (domain.lines.iter()).filter(|it| it.role == Role::Boundary);
+    let points = || rim.clone().flat_map(|it| &it.points);
+    let span = |low: Option<i32>, high: Option<i32>| {
+        (f64::from(high.unwrap_or(0)) - f64::from(low.unwrap_or(0))) * domain.grid.cell_m
+    };
+    let width_m = span(points().map(|p| p.x).min(), points().map(|p| p.x).max());
+    let height_m = span(points().map(|p| p.y).min(), points().map(|p| p.y).max());
+    let side_m = width_m.min(height_m);
+    if 2.0 * job.size_m > side_m {
+        return Err(Error::Job(format!(
+            "size {} m is too large for a domain of {width_m:.3} m x {height_m:.3} m: at least two elements must fit, so at most {:.3}",
+            job.size_m,
+            side_m / 2.0
+        )));
+    }
+    Ok(sizes)
+}
+
+fn clean(
+    job: &Job,
+    domain: &Domain,
+    sizes: &SizeWish,
+    watch: &Stopwatch,
+    findings: &mut Vec<Finding>,
+) -> Result<Cleaned, Error> {
+    let tile_cells = tiles::tile_cells(job, domain);
+    let (noded, clipped) = watch.stage("noding", 1000, |count| -> Result<_, Error> {
+        let noded = tiles::node(domain, tile_cells, count);
+        let (noded, clipped) = noding::clip(domain, noded);
+        let note = format!("{} nodes, {} edges", noded.points.len(), noded.edges.len());
+        Ok(((noded, clipped), note))
+    })?;
+    watch.stage("cleanup", 1, |_| {
+        let options = cleanup::Options {
+            tolerance: cleanup::Tolerance::Metres(job.tolerance_in_force_m()),
+        };
+        let made = cleanup::clean(domain, sizes, noded, &options);
+        findings.extend(made.findings);
+        let mut dropped: Vec<Dropped> = clipped.iter().map(clipped_stretch).collect();
+        dropped.extend(made.dropped);
+        let cleaned = Cleaned {
+            arrangement: made.arrangement,
+            dropped,
+            changes: made.changes,
+            tally: made.tally,
+        };
+        let note = format!(
+            "{} nodes, {} edges; moved at most {:.2} m",
+            cleaned.arrangement.points.len(),
+            cleaned.arrangement.edges.len(),
+            cleaned.tally.displacement_max_m
+        );
+        Ok((cleaned, note))
+    })
+}
+
+fn clipped_stretch(piece: &Piece) -> Dropped {
+    Dropped {
+        line: piece.line,
+        reason: Reason::Clipped,
+        from_m: piece.from_m.min(piece.to_m),
+        to_m: piece.from_m.max(piece.to_m),
+    }
+}
+
+/// Partition, seams through what is too large, and the partition with them.
+fn cut(
+    job: &Job,
+    domain: &Domain,
+    sizes: &SizeWish,
+    arrangement: Arrangement,
+    watch: &Stopwatch,
+    findings: &mut Vec<Finding>,
+) -> Result<(Arrangement, Partition), Error> {
+    let tile_cells = tiles::tile_cells(job, domain);
+    let partition = watch.stage("partition", 1, |_| -> Result<_, Error> {
+        let made = tiles::partition(domain, &arrangement, tile_cells, job.corner_deg)?;
+        let note = format!(
+            "{} sub-domains, {} curves",
+            made.subdomains.len(),
+            made.curves.len()
+        );
+        Ok((made, note))
+    })?;
+    Ok((arrangement, partition))
+}
+
+fn balance(
+    job: &Job,
+    domain: &Domain,
+    sizes: &SizeWish,
+    arrangement: &Arrangement,
+    partition: &Partition,
+    watch: &Stopwatch,
+) -> Result<(Goals, Balance), Error> {
+    watch.stage("parity", 1, |_| {
+        let options = intervals::Options {
+            corner_deg: job.corner_deg,
+            upper_ratio: 2.5,
+        };
+        let goals = intervals::plan(domain, sizes, arrangement, partition, &options);
+        let balance = parity::balance(
+            partition,
+            &goals,
+            &parity::Options {
+                events_max: 1 << 31,
+                nodes_max: 1000,
+                rows_max: 20_000,
+            },
+        )?;
+        let note = format!("gap {:.4} %, {} rows", 100.0 * balance.gap(), balance.rows);
+        Ok(((goals, balance), note))
+    })
+}
