@@ -196,7 +196,7 @@ impl<'a> Graph<'a> {
 
     /// What becomes of a draft that falls onto the edge between `from` and `draft.to`, if there is
     /// one. `on_left`: the draft came from the left of that edge. `Err` if the domain would vanish
-    /// on both sides.
+    /// on both sides, or a hole between them: the outline may move but not go.
     pub(super) fn fuse(
         &self,
         from: u32,
@@ -214,7 +214,8 @@ impl<'a> Graph<'a> {
         };
         // both know the strip between them: it is one face
         debug_assert_eq!(between[0], between[1]);
-        if inside == [false, false] {
+        let was_rim = draft.inside[0] != draft.inside[1];
+        if inside == [false, false] || (was_rim && inside == [true, true]) {
             return Err(());
         }
         Ok(Some(Fused { edge, inside }))

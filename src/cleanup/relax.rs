@@ -34,7 +34,7 @@ pub(super) fn relax(graph: &mut Graph, wanted: &Wanted) {
     for _ in 0..wanted.rounds {
         let mut again = Vec::new();
         for &node in &active {
-            if graph.degree(node) == 0 || is_rim_corner(graph, node) {
+            if graph.degree(node) == 0 || stays(graph, wanted, node) {
                 continue;
             }
             let push = push_m(graph, wanted, node, &mut found);
@@ -51,6 +51,16 @@ pub(super) fn relax(graph: &mut Graph, wanted: &Wanted) {
         again.dedup();
         active = again;
     }
+}
+
+/// Corners of the outline stay, but at the ends of its short edges.
+fn stays(graph: &Graph, wanted: &Wanted, node: u32) -> bool {
+    let is_short = |&edge: &u32| {
+        let it = &graph.edges[edge as usize];
+        let (a, b) = graph.ends_m(edge);
+        it.is_rim() && distance(a, b) < wanted.edge * it.size_m
+    };
+    is_rim_corner(graph, node) && !graph.star[node as usize].iter().any(is_short)
 }
 
 /// Tries the whole step, then a half and a quarter.
@@ -129,6 +139,9 @@ fn along_rim(graph: &Graph, node: u32, push: Xy) -> Xy {
     let &[e, f] = rim.as_slice() else {
         return push;
     };
+    if is_rim_corner(graph, node) {
+        return push;
+    }
     let [a, b] = [e, f].map(|edge| graph.metres(graph.edges[edge as usize].other(node)));
     let way = unit(a, b);
     let along = push[0] * way[0] + push[1] * way[1];
