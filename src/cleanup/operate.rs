@@ -78,7 +78,7 @@ impl Graph<'_> {
             self.add_or_fuse(w, draft, fused);
         }
         for piece in absorbed.lost {
-            if !self.lodge(&piece, w, share) {
+            if !self.lodge(&piece, w) {
                 let reason = self.reason_for(piece.line);
                 self.drop_piece(&piece, reason);
             }

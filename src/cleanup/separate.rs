@@ -49,11 +49,16 @@ enum With {
 
 type Queue = BinaryHeap<Reverse<(u64, Point, u32)>>;
 
-/// Closes all that is too narrow and may be closed.
-pub(super) fn separate(graph: &mut Graph, narrow: &Narrow) {
+/// Closes all that is too narrow around `nodes`, and may be closed.
+pub(super) fn separate(graph: &mut Graph, narrow: &Narrow, nodes: &[u32]) {
     let mut queue = Queue::new();
-    for node in 0..graph.at.len() as u32 {
-        push(graph, narrow, node, &mut queue);
+    let is_part = nodes.len() < graph.at.len() / 2;
+    for &node in nodes {
+        if is_part {
+            push_around(graph, narrow, node, &mut queue);
+        } else {
+            push(graph, narrow, node, &mut queue);
+        }
     }
     let mut tries = vec![0_u8; graph.at.len()];
     while let Some(Reverse((key, _, node))) = queue.pop() {
