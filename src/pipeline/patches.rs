@@ -6,7 +6,6 @@ use crate::chunk::record::ChunkReceipt;
 use crate::chunk::record::PatchRecord;
 use crate::chunk::writer::Writer;
 use crate::domain::finding::Finding;
-use crate::geometry::point::Xy;
 use crate::meshing;
 use crate::meshing::patch::Loops;
 use crate::partition::subdomains::SubdomainId;

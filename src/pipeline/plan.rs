@@ -24,6 +24,7 @@ use crate::pipeline::error::Error;
 use crate::pipeline::job::Job;
 use crate::pipeline::progress::Stopwatch;
 use crate::pipeline::tiles;
+use crate::seams;
 
 /// The whole city before its sub-domains are meshed. Its size follows the input and the number of
 /// nodes on curves, never the number of quads.
@@ -240,7 +241,23 @@ fn cut(
         );
         Ok((made, note))
     })?;
-    Ok((arrangement, partition))
+    watch.stage("seams", 1, |_| -> Result<_, Error> {
+        let options = seams::Options {
+            budget_quads: f64::from(job.seam_budget_quads),
+        };
+        let seamed = seams::cut(domain, sizes, &arrangement, &partition, &options);
+        findings.extend(seamed.findings);
+        if seamed.cuts == 0 {
+            return Ok(((arrangement, partition), "none needed".to_string()));
+        }
+        let parts = tiles::partition(domain, &seamed.arrangement, tile_cells, job.corner_deg)?;
+        let note = format!(
+            "{} seam edges, {} sub-domains",
+            seamed.cuts,
+            parts.subdomains.len()
+        );
+        Ok(((seamed.arrangement, parts), note))
+    })
 }
 
 fn balance(
