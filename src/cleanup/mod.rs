@@ -13,6 +13,7 @@ mod relax;
 mod separate;
 mod simplify;
 mod stations;
+mod thread;
 mod wedges;
 
 use crate::cleanup::changes::Change;
@@ -71,13 +72,14 @@ pub fn clean(
     if !off {
         steps(&mut graph);
     }
-    let (dropped, tally) = audit::audit(&graph, &arrangement);
+    let (mut dropped, tally) = audit::audit(&graph, &arrangement);
+    let (arrangement, torn) = match off {
+        true => (arrangement, Vec::new()),
+        false => thread::thread(domain, graph.arrangement(), &graph.measure.tolerance_m),
+    };
+    dropped.extend(torn);
     Cleaned {
-        arrangement: if off {
-            arrangement
-        } else {
-            graph.arrangement()
-        },
+        arrangement,
         dropped,
         changes: graph.changes,
         tally,
