@@ -118,41 +118,39 @@ fn steps(graph: &mut Graph) {
         reach: 0.5,
         share,
     };
-    let wanted = |share| relax::Wanted {
+    let wanted = relax::Wanted {
         edge: 0.36,
         gap: 0.31,
-        share,
+        shares: [0.5, 0.9],
         rounds: 40,
     };
-    simplify::simplify(graph, &fine);
+    simplify::simplify(graph, &fine, &graph.nodes());
     // what can be had within half the tolerance, then what needs all of it
-    separate::separate(graph, &narrow(0.5));
-    simplify::simplify(graph, &smooth);
-    for share in [0.5, 0.5, 1.0, 1.0] {
-        let zipped = wedges::zip_wedges(graph, &zip(share));
-        let mut closed = 0;
+    for share in [0.5, 1.0] {
+        separate::separate(graph, &narrow(share), &graph.nodes());
+        let mut nodes = graph.nodes();
         for _ in 0..6 {
-            let steps = collapse::collapse_thin(graph, &thin(share));
-            closed += steps;
-            if steps == 0 {
+            simplify::simplify(graph, &smooth, &nodes);
+            let mark = graph.touched.len();
+            wedges::zip_wedges(graph, &zip(share), &nodes);
+            collapse::collapse_thin(graph, &thin(share), &nodes);
+            nodes = graph.nodes_since(mark);
+            if nodes.is_empty() {
                 break;
             }
-        }
-        separate::separate(graph, &narrow(share));
-        simplify::simplify(graph, &smooth);
-        if zipped + closed == 0 && share == 1.0 {
-            break;
+            separate::separate(graph, &narrow(share), &nodes);
+            nodes = graph.nodes_since(mark);
         }
     }
-    relax::relax(graph, &wanted(0.5));
-    relax::relax(graph, &wanted(0.9));
+    let mark = graph.touched.len();
+    relax::relax(graph, &wanted, &graph.nodes());
     let rest = separate::Narrow {
         edge: 0.3,
         gap: 0.22,
         end: 0.25,
         share: 1.0,
     };
-    separate::separate(graph, &rest);
-    simplify::simplify(graph, &smooth);
-    relax::relax(graph, &wanted(0.9));
+    separate::separate(graph, &rest, &graph.nodes());
+    simplify::simplify(graph, &smooth, &graph.nodes_since(mark));
+    relax::relax(graph, &wanted, &graph.nodes_since(mark));
 }

@@ -27,6 +27,10 @@ pub(super) struct Narrow {
     pub(super) share: f64,
 }
 
+/// Edges within tolerance of several ways around could be bent to and fro without end; this many
+/// steps at one node are enough for all honest work.
+const TRIES_MAX: u8 = 16;
+
 /// A node too near to something.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Conflict {
@@ -45,13 +49,22 @@ enum With {
 
 type Queue = BinaryHeap<Reverse<(u64, Point, u32)>>;
 
-/// Closes all that is too narrow and may be closed.
-pub(super) fn separate(graph: &mut Graph, narrow: &Narrow) {
+/// Closes all that is too narrow around `nodes`, and may be closed.
+pub(super) fn separate(graph: &mut Graph, narrow: &Narrow, nodes: &[u32]) {
     let mut queue = Queue::new();
-    for node in 0..graph.at.len() as u32 {
-        push(graph, narrow, node, &mut queue);
+    let is_part = nodes.len() < graph.at.len() / 2;
+    for &node in nodes {
+        if is_part {
+            push_around(graph, narrow, node, &mut queue);
+        } else {
+            push(graph, narrow, node, &mut queue);
+        }
     }
+    let mut tries = vec![0_u8; graph.at.len()];
     while let Some(Reverse((key, _, node))) = queue.pop() {
+        if tries[node as usize] == TRIES_MAX {
+            continue;
+        }
         let conflicts = conflicts(graph, narrow, node);
         let Some(first) = conflicts.first() else {
             continue;
@@ -63,6 +76,9 @@ pub(super) fn separate(graph: &mut Graph, narrow: &Narrow) {
         }
         let resolved = (conflicts.iter()).find_map(|it| resolve(graph, narrow, node, it.with));
         if let Some(centre) = resolved {
+            tries.resize(graph.at.len(), 0);
+            let tried = tries[node as usize].max(tries[centre as usize]) + 1;
+            (tries[node as usize], tries[centre as usize]) = (tried, tried);
             push_around(graph, narrow, centre, &mut queue);
         }
     }
@@ -187,7 +203,8 @@ pub(super) fn unite(
     } else {
         (u, v)
     };
-    if is_rim_corner(graph, give) {
+    // a corner of the outline only gives way to another one
+    if is_rim_corner(graph, give) && !is_rim_corner(graph, keep) {
         return None;
     }
     let (at, moved) = (
@@ -198,7 +215,7 @@ pub(super) fn unite(
         graph.note(what, at, moved);
         return Some(keep);
     }
-    if is_rim_corner(graph, keep) {
+    if is_rim_corner(graph, keep) && !is_rim_corner(graph, give) {
         return None;
     }
     if graph.merge(keep, give, share) {

@@ -28,10 +28,10 @@ pub(super) struct Smooth {
 
 const CORNER_DEG: f64 = 30.0;
 
-/// Removes all nodes of degree two that `smooth` allows.
-pub(super) fn simplify(graph: &mut Graph, smooth: &Smooth) {
+/// Removes all nodes of degree two that `smooth` allows, of these and what they lead to.
+pub(super) fn simplify(graph: &mut Graph, smooth: &Smooth, nodes: &[u32]) {
     let mut queue = BinaryHeap::new();
-    for node in 0..graph.at.len() as u32 {
+    for &node in nodes {
         push(graph, smooth, node, &mut queue);
     }
     while let Some(Reverse((key, _, _, node))) = queue.pop() {

@@ -29,31 +29,28 @@ struct Wedge {
     b: u32,
 }
 
-/// Zips all wedges, the sharpest first; returns how many.
-pub(super) fn zip_wedges(graph: &mut Graph, zip: &Zip) -> usize {
-    let mut wedges = wedges(graph, zip.below_deg);
+/// Zips the wedges at `nodes`, the sharpest first.
+pub(super) fn zip_wedges(graph: &mut Graph, zip: &Zip, nodes: &[u32]) {
+    let mut wedges = wedges(graph, zip.below_deg, nodes);
     wedges.sort_by(|u, v| {
         (u.angle_deg.total_cmp(&v.angle_deg))
             .then_with(|| graph.point(u.hub).cmp(&graph.point(v.hub)))
             .then_with(|| graph.point(u.a).cmp(&graph.point(v.a)))
     });
-    let mut zipped = 0;
     for wedge in wedges {
         let is_there = [wedge.a, wedge.b]
             .iter()
             .all(|&it| graph.find(wedge.hub, it).is_some());
         if is_there && zip_one(graph, zip, &wedge) {
             graph.note("zipped", graph.point(wedge.hub), 0.0);
-            zipped += 1;
         }
     }
-    zipped
 }
 
 /// All wedges inside the domain below an angle, unsorted.
-fn wedges(graph: &Graph, below_deg: f64) -> Vec<Wedge> {
+fn wedges(graph: &Graph, below_deg: f64, nodes: &[u32]) -> Vec<Wedge> {
     let mut wedges = Vec::new();
-    for hub in 0..graph.at.len() as u32 {
+    for &hub in nodes {
         let star = sorted_star(graph, hub);
         if star.len() < 2 {
             continue;

@@ -91,6 +91,25 @@ pub struct Options {
     pub good_enough: f64,
 }
 
+impl Options {
+    /// All methods, in the order of likely quality.
+    pub fn all() -> Options {
+        Options {
+            methods: vec![
+                Method::Mapping,
+                Method::Strip,
+                Method::Looping,
+                Method::Indirect,
+            ],
+            good_enough: 0.9,
+        }
+    }
+}
+
+/// A patch of more quads than this ends the competition: the strip made it, mostly of perfect
+/// cells, and the other methods would be slower and worse there.
+const LARGE_QUADS: usize = 2000;
+
 /// The mesh of one sub-domain and how good it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Meshed {
@@ -121,10 +140,9 @@ pub fn mesh(loops: &Loops, options: &Options) -> Result<Meshed, Defect> {
         {
             best = Some((patch, score));
         }
-        if best
-            .as_ref()
-            .is_some_and(|best| best.1.rank() >= options.good_enough)
-        {
+        if best.as_ref().is_some_and(|(patch, score)| {
+            score.rank() >= options.good_enough || patch.quads.len() > LARGE_QUADS
+        }) {
             break;
         }
     }
