@@ -66,8 +66,6 @@ mod smooth;
 mod splitting;
 mod strip;
 mod strip_border;
-#[cfg(test)]
-mod strip_tests;
 mod triangulate;
 mod visits;
 
