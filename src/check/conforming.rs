@@ -59,6 +59,8 @@ pub(crate) struct Conforming<'a> {
     cells: Fans,
     /// Directed edges of the walks, local ids.
     walk: Vec<[u32; 2]>,
+    /// Boundary node of the patch at hand -> does a walk pass it?
+    walked: Vec<bool>,
     walks: Fans,
     edges: u64,
     worst_area_rel: f64,
@@ -76,6 +78,7 @@ impl<'a> Conforming<'a> {
             local_of: vec![NONE; frame.nodes.len()],
             cells: Fans::default(),
             walk: Vec::new(),
+            walked: Vec::new(),
             walks: Fans::default(),
             edges: 0,
             worst_area_rel: 0.0,
@@ -106,13 +109,19 @@ impl<'a> Conforming<'a> {
             self.local_of[id as usize] = local as u32;
         }
         self.walk.clear();
+        self.walked.clear();
+        self.walked.resize(patch.boundary.len(), false);
         for walk in self.frame.walks_of(subdomain as usize) {
             for [a, b] in self.frame.walk_edges(walk) {
                 let edge = [a, b].map(|id| self.local_of[id as usize]);
                 fits &= !edge.contains(&NONE);
+                if let Some(walked) = self.walked.get_mut(edge[0] as usize) {
+                    *walked = true;
+                }
                 self.walk.push(edge);
             }
         }
+        fits &= self.walked.iter().all(|&it| it);
         if !fits {
             let at_m = (patch.boundary.first())
                 .and_then(|&id| projected(self.frame.nodes[id as usize], self.origin_m));

@@ -173,7 +173,7 @@ impl Follow<'_> {
                 let t = part as f64 / parts as f64;
                 let p = [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
                 let station = self.stations_m[k] + t * length;
-                let distance = self.from_steps_m(p, station);
+                let distance = self.to_steps_m(p, station);
                 if distance <= self.allowed_m {
                     farthest = farthest.max(distance);
                 } else if !self.is_dropped(station, station) {
@@ -193,7 +193,7 @@ impl Follow<'_> {
 
     /// Distance from `p` to the mesh edges of the line: those near `station` first, since lines
     /// are long and the right edge is nearly always there.
-    fn from_steps_m(&self, p: Xy, station: f64) -> f64 {
+    fn to_steps_m(&self, p: Xy, station: f64) -> f64 {
         let at = |step: &Step| [step.from, step.to].map(|node| self.nodes[node as usize]);
         let nearest = |steps: &[Step]| {
             (steps.iter()).fold(f64::INFINITY, |d, step| d.min(distance_m(p, at(step))))
@@ -219,7 +219,7 @@ impl Follow<'_> {
             for part in 0..=parts {
                 let t = part as f64 / parts as f64;
                 let p = [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
-                let distance = self.from_line_m(p, step);
+                let distance = self.to_line_m(p, step);
                 farthest = farthest.max(distance.min(self.allowed_m));
                 if distance > self.allowed_m {
                     promise.broken(projected(p, self.origin_m), || {
@@ -238,7 +238,7 @@ impl Follow<'_> {
     }
 
     /// Distance from `p` to the line, near the stations of `step` first.
-    fn from_line_m(&self, p: Xy, step: &Step) -> f64 {
+    fn to_line_m(&self, p: Xy, step: &Step) -> f64 {
         let nearest = |from: usize, to: usize| {
             (from..to).fold(f64::INFINITY, |d, k| {
                 d.min(distance_m(p, [self.places[k], self.places[k + 1]]))

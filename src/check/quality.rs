@@ -239,7 +239,10 @@ impl<'a> Measuring<'a> {
             let shape = self.measure(&corners, size_m);
             for k in 0..4 {
                 let ends = [quad[k], quad[(k + 1) % 4]];
-                if ends.iter().all(|&node| node as usize >= patch.boundary.len()) {
+                if ends
+                    .iter()
+                    .all(|&node| node as usize >= patch.boundary.len())
+                {
                     let length = distance(corners[k], corners[(k + 1) % 4]);
                     self.quality.edge_open_over_size.add(length / size_m);
                 }

@@ -27,7 +27,7 @@ pub(crate) fn check(mesh: &Mesh) -> [Promise; 2] {
         let edges: u64 = halves
             .map(|&half| u64::from(frame.count((half >> 1) as usize)))
             .sum();
-        if edges < 4 || edges % 2 != 0 {
+        if edges < 4 || !edges.is_multiple_of(2) {
             let at_m = somewhere(&frame, subdomain, origin_m);
             even.broken(at_m, || {
                 format!("sub-domain {subdomain} has {edges} boundary edges")

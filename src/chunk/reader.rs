@@ -49,7 +49,7 @@ impl Mesh {
     /// Files of two meshes do not mix: the index knows each file's checksum.
     fn expect_listed(&self, index: &IndexView, file: &MappedFile, name: &str) -> Result<(), Error> {
         let stored = file.stored();
-        let listed = (index.files.iter()).any(|&it| it == (name, stored.bytes, stored.crc32));
+        let listed = index.files.contains(&(name, stored.bytes, stored.crc32));
         if listed {
             Ok(())
         } else {

@@ -18,11 +18,16 @@ const ROUNDING_M: f64 = 1e-6;
 
 /// What the input has and the result does not, with the reason, and the table of figures.
 pub(super) fn audit(graph: &Graph, input: &Arrangement) -> (Vec<Dropped>, Tally) {
-    let wanted = stretches(graph, input.pieces.iter(), false);
+    let wanted = stretches(graph, input.pieces.iter());
     let live = || graph.edges.iter().filter(|edge| edge.alive);
-    let there = stretches(graph, live().flat_map(|edge| &edge.pieces), true);
+    let there = stretches(graph, live().flat_map(|edge| &edge.pieces));
+    let carriers = carriers(graph);
     let mut dropped: Vec<Dropped> = Vec::new();
-    for (line, from_m, to_m) in subtract(&wanted, &there) {
+    let missing = subtract(&wanted, &there);
+    for (line, from_m, to_m) in missing
+        .iter()
+        .flat_map(|it| uncovered(graph, &carriers, it))
+    {
         let known = graph.dropped.iter().filter(|it| it.line == line);
         let middle = 0.5 * (from_m + to_m);
         let reason = (known
@@ -46,11 +51,7 @@ pub(super) fn audit(graph: &Graph, input: &Arrangement) -> (Vec<Dropped>, Tally)
 }
 
 /// The union of the pieces, sorted; of constraint lines only.
-fn stretches<'p>(
-    graph: &Graph,
-    pieces: impl Iterator<Item = &'p Piece>,
-    _there: bool,
-) -> Vec<Stretch> {
+fn stretches<'p>(graph: &Graph, pieces: impl Iterator<Item = &'p Piece>) -> Vec<Stretch> {
     let mut all: Vec<Stretch> = pieces
         .filter(|piece| !graph.measure.is_rim(piece.line))
         .map(|it| (it.line, it.from_m.min(it.to_m), it.from_m.max(it.to_m)))
@@ -91,6 +92,50 @@ fn subtract(wanted: &[Stretch], there: &[Stretch]) -> Vec<Stretch> {
         }
     }
     missing
+}
+
+/// All (line, edge) pairs, sorted.
+fn carriers(graph: &Graph) -> Vec<(LineId, u32)> {
+    let mut carriers = Vec::new();
+    for edge in graph.live() {
+        let pieces = &graph.edges[edge as usize].pieces;
+        carriers.extend(pieces.iter().map(|piece| (piece.line, edge)));
+    }
+    carriers.sort_unstable();
+    carriers.dedup();
+    carriers
+}
+
+/// The parts of a stretch that are beyond tolerance of all edges that carry the line.
+fn uncovered(
+    graph: &Graph,
+    carriers: &[(LineId, u32)],
+    &(line, from, to): &Stretch,
+) -> Vec<Stretch> {
+    let own = &carriers[carriers.partition_point(|it| it.0 < line)..];
+    let own = &own[..own.partition_point(|it| it.0 == line)];
+    let limit = graph.measure.tolerance_m[line as usize];
+    let is_near = |station: f64| {
+        let p = graph.measure.point(line, station);
+        own.iter().any(|&(_, edge)| {
+            let (a, b) = graph.ends_m(edge);
+            to_segment(p, a, b).0 <= limit
+        })
+    };
+    let steps = ((to - from) / (0.1 * graph.measure.size_m[line as usize])).ceil();
+    let at = |k: f64| from + (to - from) * k / steps;
+    let mut parts: Vec<Stretch> = Vec::new();
+    for k in 0..steps as usize {
+        let (low, high) = (at(k as f64), at(k as f64 + 1.0));
+        if is_near(low) && is_near(high) {
+            continue;
+        }
+        match parts.last_mut() {
+            Some(last) if last.2 == low => last.2 = high,
+            _ => parts.push((line, low, high)),
+        }
+    }
+    parts
 }
 
 /// Largest and 99 % displacement by length, of every segment of every piece from its edge.

@@ -30,6 +30,9 @@ struct Face {
 /// Faces with more edges than this are not thin in the sense of one place to close.
 const WALK_MAX: usize = 64;
 
+/// Loops with a perimeter above this many mesh sizes are not small.
+const LOOP_MAX: f64 = 4.0;
+
 /// Closes thin faces, the thinnest first, one step a face; returns how many steps.
 pub(super) fn collapse_thin(graph: &mut Graph, thin: &Thin) -> usize {
     let mut faces = thin_faces(graph, thin.width);
@@ -124,9 +127,9 @@ fn close(graph: &mut Graph, thin: &Thin, face: &Face) -> bool {
         }
     }
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
-    pairs.iter().any(|&(_, node, edge)| {
-        join(graph, node, edge, 0.25, thin.share).is_some()
-    })
+    pairs
+        .iter()
+        .any(|&(_, node, edge)| join(graph, node, edge, 0.25, thin.share).is_some())
 }
 
 /// Drops a loop that hangs on at most one junction.
@@ -138,7 +141,12 @@ fn drop_loop(graph: &mut Graph, face: &Face) -> bool {
         .count();
     let is_free =
         (face.walk.iter()).all(|&(edge, _)| graph.edges[edge as usize].inside == [true; 2]);
-    if junctions > 1 || !is_free {
+    let length: f64 = (face.walk.iter())
+        .map(|&(edge, _)| graph.ends_m(edge))
+        .map(|(a, b)| distance(a, b))
+        .sum();
+    let size = graph.edges[face.walk[0].0 as usize].size_m;
+    if junctions > 1 || !is_free || length > LOOP_MAX * size {
         return false;
     }
     let at = graph.point(face.walk[0].1);

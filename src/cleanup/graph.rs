@@ -110,7 +110,8 @@ impl<'a> Graph<'a> {
     }
 
     /// Adds an edge that is not there yet.
-    pub(super) fn add(&mut self, ends: [u32; 2], pieces: Pieces, inside: [bool; 2]) -> u32 {
+    pub(super) fn add(&mut self, ends: [u32; 2], mut pieces: Pieces, inside: [bool; 2]) -> u32 {
+        thin_out(&mut pieces);
         let id = self.edges.len() as u32;
         let (size_m, rank) = self.size_and_rank(&pieces);
         self.edges.push(Edge {
@@ -185,7 +186,8 @@ impl<'a> Graph<'a> {
             it.pieces.extend(draft.pieces.iter().map(turned));
             it.inside = [inside[1], inside[0]];
         }
-        let pieces = std::mem::take(&mut it.pieces);
+        let mut pieces = std::mem::take(&mut it.pieces);
+        thin_out(&mut pieces);
         let (size_m, rank) = self.size_and_rank(&pieces);
         let it = &mut self.edges[edge as usize];
         (it.pieces, it.size_m, it.rank) = (pieces, size_m, rank);
@@ -300,6 +302,33 @@ impl<'a> Graph<'a> {
         }
         Arrangement::from_parts(&self.at, parts)
     }
+}
+
+/// Keeps at most two stretches of each line in each direction, the longest. Where a line meanders
+/// within one edge, its stretches would multiply with each split; what goes here is covered by the
+/// same line on the same edge, and the audit looks at it again.
+fn thin_out(pieces: &mut Pieces) {
+    if pieces.len() <= 2 {
+        return;
+    }
+    let length = |piece: &Piece| (piece.to_m - piece.from_m).abs();
+    let group = |piece: &Piece| (piece.line, piece.from_m < piece.to_m);
+    pieces.sort_by(|p, q| {
+        (group(p).cmp(&group(q)))
+            .then_with(|| length(q).total_cmp(&length(p)))
+            .then_with(|| p.order(q))
+    });
+    let mut same = 0;
+    let mut last = None;
+    pieces.retain(|piece| {
+        same = if last == Some(group(piece)) {
+            same + 1
+        } else {
+            0
+        };
+        last = Some(group(piece));
+        same < 2
+    });
 }
 
 /// An edge that takes up a draft, and its sides afterwards, away from the draft's first node.

@@ -89,6 +89,7 @@ fn steps(graph: &mut Graph) {
     let fine = simplify::Smooth {
         deviation: 0.03,
         at_corners: 0.03,
+        on_rim: 0.03,
         gap: 0.0,
         angle_deg: 0.0,
         over_ends: false,
@@ -96,52 +97,55 @@ fn steps(graph: &mut Graph) {
     let smooth = simplify::Smooth {
         deviation: 0.2,
         at_corners: 0.1,
+        on_rim: 0.1,
         gap: 0.3,
         angle_deg: 25.0,
         over_ends: true,
     };
-    let narrow = separate::Narrow {
+    let narrow = |share| separate::Narrow {
         edge: 0.25,
         gap: 0.18,
         end: 0.25,
-        share: 1.0,
+        share,
     };
-    let zip = wedges::Zip {
+    let zip = |share| wedges::Zip {
         below_deg: 25.0,
         gap: 0.35,
-        share: 0.8,
+        share,
     };
-    let thin = collapse::Thin {
+    let thin = |share| collapse::Thin {
         width: 0.25,
         reach: 0.5,
-        share: 1.0,
+        share,
     };
-    let wanted = relax::Wanted {
+    let wanted = |share| relax::Wanted {
         edge: 0.36,
         gap: 0.31,
-        share: 0.9,
+        share,
         rounds: 40,
     };
     simplify::simplify(graph, &fine);
-    separate::separate(graph, &narrow);
+    // what can be had within half the tolerance, then what needs all of it
+    separate::separate(graph, &narrow(0.5));
     simplify::simplify(graph, &smooth);
-    for _ in 0..3 {
-        let zipped = wedges::zip_wedges(graph, &zip);
+    for share in [0.5, 0.5, 1.0, 1.0] {
+        let zipped = wedges::zip_wedges(graph, &zip(share));
         let mut closed = 0;
         for _ in 0..6 {
-            let steps = collapse::collapse_thin(graph, &thin);
+            let steps = collapse::collapse_thin(graph, &thin(share));
             closed += steps;
             if steps == 0 {
                 break;
             }
         }
-        separate::separate(graph, &narrow);
+        separate::separate(graph, &narrow(share));
         simplify::simplify(graph, &smooth);
-        if zipped + closed == 0 {
+        if zipped + closed == 0 && share == 1.0 {
             break;
         }
     }
-    relax::relax(graph, &wanted);
+    relax::relax(graph, &wanted(0.5));
+    relax::relax(graph, &wanted(0.9));
     let rest = separate::Narrow {
         edge: 0.3,
         gap: 0.22,
@@ -150,5 +154,5 @@ fn steps(graph: &mut Graph) {
     };
     separate::separate(graph, &rest);
     simplify::simplify(graph, &smooth);
-    relax::relax(graph, &wanted);
+    relax::relax(graph, &wanted(0.9));
 }

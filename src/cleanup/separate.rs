@@ -6,6 +6,7 @@ use std::collections::BinaryHeap;
 
 use crate::cleanup::graph::Graph;
 use crate::cleanup::importance::Importance;
+use crate::cleanup::importance::is_rim_corner;
 use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;
 use crate::cleanup::operate::Bend;
@@ -186,6 +187,9 @@ pub(super) fn unite(
     } else {
         (u, v)
     };
+    if is_rim_corner(graph, give) {
+        return None;
+    }
     let (at, moved) = (
         graph.point(keep),
         distance(graph.metres(u), graph.metres(v)),
@@ -193,6 +197,9 @@ pub(super) fn unite(
     if graph.merge(give, keep, share) {
         graph.note(what, at, moved);
         return Some(keep);
+    }
+    if is_rim_corner(graph, keep) {
+        return None;
     }
     if graph.merge(keep, give, share) {
         graph.note(what, graph.point(give), moved);
@@ -243,10 +250,13 @@ pub(super) fn join(graph: &mut Graph, node: u32, edge: u32, near: f64, share: f6
         return None;
     }
     let moved = [graph.point(node)];
-    let bends = Importance::of(graph, node).rank > rank;
+    let bends = Importance::of(graph, node).rank > rank || is_rim_corner(graph, node);
     if bends && graph.bend(edge, Bend::To(node), share).is_some() {
         graph.note(what, moved[0], gap);
         return Some(node);
+    }
+    if is_rim_corner(graph, node) {
+        return None;
     }
     if let Some(landed) = land(
         graph,

@@ -16,6 +16,8 @@ pub(super) struct Smooth {
     pub(super) deviation: f64,
     /// The same where the way turns by more than [`CORNER_DEG`].
     pub(super) at_corners: f64,
+    /// The same along the outline.
+    pub(super) on_rim: f64,
     /// No node may come nearer than this to the new edge (unless it was as near before).
     pub(super) gap: f64,
     /// No angle at the ends of the new edge may fall below this, degrees.

@@ -117,8 +117,19 @@ fn zip_one(graph: &mut Graph, zip: &Zip, wedge: &Wedge) -> bool {
     }
     let reach = gap / (2.0 * half.sin());
     let (u, v) = (towards(o, a_at, 1.0 / la), towards(o, b_at, 1.0 / lb));
-    let middle = [(u[0] + v[0]) / 2.0, (u[1] + v[1]) / 2.0];
-    let parting = [o[0] + middle[0] * reach, o[1] + middle[1] * reach];
+    // the outline stays: the other line comes to it
+    let is_rim = [a, b].map(|it| {
+        graph
+            .find(hub, it)
+            .is_some_and(|e| graph.edges[e as usize].is_rim())
+    });
+    let way = match is_rim {
+        [true, false] => u,
+        [false, true] => v,
+        [true, true] => return false,
+        [false, false] => [(u[0] + v[0]) / 2.0, (u[1] + v[1]) / 2.0],
+    };
+    let parting = [o[0] + way[0] * reach, o[1] + way[1] * reach];
     part(
         graph,
         zip,
@@ -161,6 +172,12 @@ fn part(
             added.push(node);
             arms[k] = node;
         }
+    }
+    if graph
+        .find(wedge.hub, arms[1])
+        .is_some_and(|e| graph.edges[e as usize].is_rim())
+    {
+        arms.swap(0, 1);
     }
     let first = graph.find(wedge.hub, arms[0]).expect("an arm");
     let middle = graph.bend(first, Bend::At(cell(graph, parting)), zip.share);

@@ -18,12 +18,16 @@ const MIDDLE_M: [f64; 2] = [500_000.0, 5_000_000.0];
 pub(super) fn write(lines: usize, seed: u64, out: &Path) -> Result<City, Error> {
     if lines < synth::LEAST_LINES {
         let least = synth::LEAST_LINES;
-        return Err(Error::Job(format!("--lines {lines}: a city needs at least {least} lines")));
+        return Err(Error::Job(format!(
+            "--lines {lines}: a city needs at least {least} lines"
+        )));
     }
     let city = synth::city(lines, seed);
     let refused = |it| Error::Write(out.to_path_buf(), it);
     let mut file = BufWriter::new(File::create(out).map_err(refused)?);
-    write_city(&city, &mut file).and_then(|()| file.flush()).map_err(refused)?;
+    write_city(&city, &mut file)
+        .and_then(|()| file.flush())
+        .map_err(refused)?;
     Ok(city)
 }
 
@@ -47,8 +51,8 @@ fn write_city(city: &City, to: &mut impl Write) -> std::io::Result<()> {
 }
 
 fn positions(points: &[[f64; 2]]) -> String {
-    let each = points.iter().map(|p| {
-        format!("[{:.2},{:.2}]", p[0] + MIDDLE_M[0], p[1] + MIDDLE_M[1])
-    });
+    let each = points
+        .iter()
+        .map(|p| format!("[{:.2},{:.2}]", p[0] + MIDDLE_M[0], p[1] + MIDDLE_M[1]));
     format!("[{}]", each.collect::<Vec<_>>().join(","))
 }

@@ -32,19 +32,29 @@ struct JobFile {
 /// The job that these words ask for, or a sentence that says what is wrong with them.
 pub fn job(args: &BuildArgs) -> Result<Job, String> {
     let is_job_file = args.input.extension().is_some_and(|it| it == "toml");
-    let file = if is_job_file { read(&args.input)? } else { JobFile::default() };
+    let file = if is_job_file {
+        read(&args.input)?
+    } else {
+        JobFile::default()
+    };
     let input = if is_job_file {
-        (file.input).ok_or("the job file has no `input`: name the line work, for example input = \"city.geojson\"")?
+        (file.input).ok_or(
+            "the job file has no `input`: name the line work, for example input = \"city.geojson\"",
+        )?
     } else {
         args.input.clone()
     };
-    let size_m = (args.size.or(file.size)).ok_or("no size: give --size METRES, or `size` in the job file")?;
-    let output = (args.out.clone().or(file.output)).ok_or("no output: give --out FOLDER.polder, or `output` in the job file")?;
+    let size_m = (args.size.or(file.size))
+        .ok_or("no size: give --size METRES, or `size` in the job file")?;
+    let output = (args.out.clone().or(file.output))
+        .ok_or("no output: give --out FOLDER.polder, or `output` in the job file")?;
     let crs = match (&args.crs, &file.crs) {
         (Some(word), _) => crs(word)?,
         (None, Some(toml::Value::String(word))) => crs(word)?,
         (None, Some(toml::Value::Integer(code))) => crs(&code.to_string())?,
-        (None, Some(other)) => return Err(format!("`crs` is {other}: give an EPSG code or \"local\"")),
+        (None, Some(other)) => {
+            return Err(format!("`crs` is {other}: give an EPSG code or \"local\""));
+        }
         (None, None) => CrsChoice::FromFile,
     };
     let job = Job {
@@ -57,7 +67,10 @@ pub fn job(args: &BuildArgs) -> Result<Job, String> {
         cell_m: file.cell.unwrap_or(CELL_M),
         tile_m: args.tile.or(file.tile),
         corner_deg: file.corner.unwrap_or(CORNER_DEG),
-        seam_budget_quads: args.seam_budget.or(file.seam_budget).unwrap_or(SEAM_BUDGET_QUADS),
+        seam_budget_quads: args
+            .seam_budget
+            .or(file.seam_budget)
+            .unwrap_or(SEAM_BUDGET_QUADS),
         threads: args.threads.or(file.threads).unwrap_or(0),
         force: args.force,
     };
@@ -81,15 +94,21 @@ fn crs(word: &str) -> Result<CrsChoice, String> {
         return Ok(CrsChoice::Local);
     }
     let code = word.to_ascii_uppercase();
-    (code.strip_prefix("EPSG:").unwrap_or(&code).parse().map(CrsChoice::Epsg))
-        .map_err(|_| format!("--crs {word}: give `local` or an EPSG code such as 32632"))
+    (code
+        .strip_prefix("EPSG:")
+        .unwrap_or(&code)
+        .parse()
+        .map(CrsChoice::Epsg))
+    .map_err(|_| format!("--crs {word}: give `local` or an EPSG code such as 32632"))
 }
 
 fn validate(job: &Job) -> Result<(), String> {
     let sizes = (job.sizes_m.iter()).map(|(kind, size_m)| (format!("sizes.{kind}"), *size_m));
     for (name, size_m) in sizes.chain([("size".to_string(), job.size_m)]) {
         if !(size_m.is_finite() && size_m > 0.0) {
-            return Err(format!("{name} is {size_m}: it must be a positive number of metres"));
+            return Err(format!(
+                "{name} is {size_m}: it must be a positive number of metres"
+            ));
         }
         if size_m < 20.0 * job.cell_m {
             return Err(format!(
@@ -98,17 +117,26 @@ fn validate(job: &Job) -> Result<(), String> {
             ));
         }
     }
-    if job.tolerance_m.is_some_and(|it| !(it.is_finite() && it >= 0.0)) {
+    if job
+        .tolerance_m
+        .is_some_and(|it| !(it.is_finite() && it >= 0.0))
+    {
         return Err("tolerance: it must be zero or a positive number of metres".into());
     }
     if !(job.cell_m.is_finite() && job.cell_m >= 1e-6) {
-        return Err(format!("cell is {} m: it must be at least 0.000001", job.cell_m));
+        return Err(format!(
+            "cell is {} m: it must be at least 0.000001",
+            job.cell_m
+        ));
     }
     if job.tile_m.is_some_and(|it| !(it.is_finite() && it > 0.0)) {
         return Err("tile: it must be a positive number of metres".into());
     }
     if !(5.0..=90.0).contains(&job.corner_deg) {
-        return Err(format!("corner is {} degrees: it must lie in 5..90", job.corner_deg));
+        return Err(format!(
+            "corner is {} degrees: it must lie in 5..90",
+            job.corner_deg
+        ));
     }
     if job.seam_budget_quads < 1000 {
         return Err("the seam budget must be at least 1000 quads".into());

@@ -13,8 +13,10 @@ use crate::check;
 use crate::chunk::reader::Mesh;
 use crate::cli::args::BuildArgs;
 use crate::cli::args::Command;
+use crate::cli::args::FormatWord;
 use crate::cli::args::Words;
 use crate::cli::progress::Progress;
+use crate::export;
 use crate::pipeline;
 use crate::pipeline::error::Error;
 use clap::Parser;
@@ -38,12 +40,35 @@ fn obey(words: &Words) -> Result<u8, Error> {
         Command::Plan(args) => plan(words, args),
         Command::Check { mesh } => verify(words, mesh),
         Command::Report { mesh, out, force } => report(words, mesh, out, *force),
-        Command::Export { .. } => Ok(2),
+        Command::Export {
+            mesh,
+            format,
+            cleaned,
+            out,
+            force,
+        } => {
+            let format = match format {
+                FormatWord::Ugrid => export::Format::Ugrid,
+                FormatWord::Sms => export::Format::Sms,
+                FormatWord::Lines if *cleaned => export::Format::CleanedLines,
+                FormatWord::Lines => export::Format::Lines,
+                FormatWord::Changes => export::Format::Changes,
+            };
+            refuse_existing(out, *force)?;
+            let written = export::export(&Mesh::open(mesh)?, format, out)?;
+            say(words, summary::exported(out, &written));
+            Ok(0)
+        }
         Command::Info { mesh } => {
             say(words, summary::info(&Mesh::open(mesh)?));
             Ok(0)
         }
-        Command::Synth { lines, seed, out, force } => {
+        Command::Synth {
+            lines,
+            seed,
+            out,
+            force,
+        } => {
             refuse_existing(out, *force)?;
             let city = city_file::write(*lines, *seed, out)?;
             say(words, summary::synth(out, &city));
@@ -88,7 +113,9 @@ fn report(words: &Words, mesh: &Path, out: &Path, force: bool) -> Result<u8, Err
 fn refuse_existing(out: &Path, force: bool) -> Result<(), Error> {
     if !force && out.symlink_metadata().is_ok() {
         let out = out.display();
-        return Err(Error::Job(format!("{out} exists: choose another name, or replace it with --force")));
+        return Err(Error::Job(format!(
+            "{out} exists: choose another name, or replace it with --force"
+        )));
     }
     Ok(())
 }

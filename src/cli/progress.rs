@@ -72,7 +72,14 @@ impl Progress {
             bar
         });
         let now = Instant::now();
-        Shown { stage, bar, total, done: 0, begun: now, last_line: now }
+        Shown {
+            stage,
+            bar,
+            total,
+            done: 0,
+            begun: now,
+            last_line: now,
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::check::verdict::Verdict;
 use crate::chunk::reader::Mesh;
+use crate::export::Stats;
 use crate::pipeline::job::Job;
 use crate::pipeline::outcome::Estimate;
 use crate::pipeline::outcome::Outcome;
@@ -23,7 +24,11 @@ pub(super) struct Summary {
 
 impl Summary {
     fn good(text: String, json: Value) -> Summary {
-        Summary { text, json, good: true }
+        Summary {
+            text,
+            json,
+            good: true,
+        }
     }
 }
 
@@ -38,7 +43,12 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         .map(|it| json!({"stage": it.stage, "seconds": it.seconds, "note": it.note}))
         .collect();
     let methods: serde_json::Map<String, Value> = (METHODS.iter().zip(&q.methods))
-        .map(|(name, it)| (name.to_string(), json!({"subdomains": it.subdomains, "quads": it.quads})))
+        .map(|(name, it)| {
+            (
+                name.to_string(),
+                json!({"subdomains": it.subdomains, "quads": it.quads}),
+            )
+        })
         .collect();
     let verdict = verdict(&outcome.verdict);
     let json = json!({
@@ -89,7 +99,11 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         let _ = writeln!(text, "finding: {count} x {what}");
     }
     text.push_str(&verdict.text);
-    Summary { text, json, good: outcome.verdict.holds() }
+    Summary {
+        text,
+        json,
+        good: outcome.verdict.holds(),
+    }
 }
 
 fn quality(verdict: &Verdict) -> Value {
@@ -119,7 +133,9 @@ pub(super) fn verdict(verdict: &Verdict) -> Summary {
         let _ = writeln!(text, "{word} {:<12} {}", promise.name, promise.found);
         let mut defects = Vec::new();
         for defect in &promise.defects {
-            let place = defect.at_m.map_or(String::new(), |p| format!(" at {:.3} {:.3}", p[0], p[1]));
+            let place = defect
+                .at_m
+                .map_or(String::new(), |p| format!(" at {:.3} {:.3}", p[0], p[1]));
             let _ = writeln!(text, "       {}{place}", defect.text);
             defects.push(json!({"text": defect.text, "at_m": defect.at_m}));
         }
@@ -129,9 +145,17 @@ pub(super) fn verdict(verdict: &Verdict) -> Summary {
         }));
     }
     let holds = verdict.holds();
-    text.push_str(if holds { "every promise holds" } else { "A PROMISE IS BROKEN" });
+    text.push_str(if holds {
+        "every promise holds"
+    } else {
+        "A PROMISE IS BROKEN"
+    });
     let json = json!({"holds": holds, "promises": promises, "quality": quality(verdict)});
-    Summary { text, json, good: holds }
+    Summary {
+        text,
+        json,
+        good: holds,
+    }
 }
 
 pub(super) fn planned(cost: &Estimate) -> Summary {
@@ -149,14 +173,28 @@ pub(super) fn planned(cost: &Estimate) -> Summary {
     )
 }
 
+pub(super) fn exported(out: &Path, written: &Stats) -> Summary {
+    let (out, bytes) = (out.display().to_string(), written.bytes);
+    Summary::good(
+        format!("{out}: {bytes} bytes"),
+        json!({"out": out, "bytes": bytes}),
+    )
+}
+
 pub(super) fn reported(out: &Path, picture: &Path) -> Summary {
     let (out, picture) = (out.display().to_string(), picture.display().to_string());
-    Summary::good(format!("{out}\n{picture}"), json!({"out": out, "picture": picture}))
+    Summary::good(
+        format!("{out}\n{picture}"),
+        json!({"out": out, "picture": picture}),
+    )
 }
 
 pub(super) fn synth(out: &Path, city: &City) -> Summary {
     let (out, lines) = (out.display().to_string(), city.features.len());
-    Summary::good(format!("{out}: {lines} lines"), json!({"out": out, "lines": lines}))
+    Summary::good(
+        format!("{out}: {lines} lines"),
+        json!({"out": out, "lines": lines}),
+    )
 }
 
 pub(super) fn info(mesh: &Mesh) -> Summary {

@@ -137,23 +137,21 @@ impl Drawing<'_> {
                 (right, left)
             }
         };
-        let runs: Vec<((u32, u32), usize)> = chain
-            .chunk_by(|a, b| sides_of(a) == sides_of(b))
-            .map(|run| (sides_of(&run[0]), run.len()))
-            .collect();
+        let runs: Vec<&[Step]> = chain.chunk_by(|a, b| sides_of(a) == sides_of(b)).collect();
         let name = |side: u32| match side {
             OUTSIDE => "null".to_string(),
             side => side.to_string(),
         };
-        let list = |pick: &dyn Fn(&((u32, u32), usize)) -> String| {
-            runs.iter().map(pick).collect::<Vec<String>>().join(",")
+        let list = |pick: &dyn Fn(&[Step]) -> String| {
+            let picked: Vec<String> = runs.iter().map(|run| pick(run)).collect();
+            picked.join(",")
         };
         write!(
             file,
             "\"left\":[{}],\"right\":[{}],\"edges\":[{}]",
-            list(&|run| name(run.0.0)),
-            list(&|run| name(run.0.1)),
-            list(&|run| run.1.to_string())
+            list(&|run| name(sides_of(&run[0]).0)),
+            list(&|run| name(sides_of(&run[0]).1)),
+            list(&|run| run.len().to_string())
         )
     }
 }

@@ -115,7 +115,6 @@ fn header(index: &IndexView) -> Header {
         .push(("topology_dimension", Value::Int(2)));
     for (name, value) in [
         ("node_coordinates", "mesh2d_node_x mesh2d_node_y"),
-        ("node_dimension", "mesh2d_nNodes"),
         ("face_node_connectivity", "mesh2d_face_nodes"),
         ("face_dimension", "mesh2d_nFaces"),
         ("max_face_nodes_dimension", "mesh2d_nMax_face_nodes"),

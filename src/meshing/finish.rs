@@ -9,6 +9,7 @@ use crate::meshing::patch::Loops;
 use crate::meshing::patch::Patch;
 use crate::meshing::smooth::OPEN;
 use crate::meshing::smooth::PERFECT;
+use crate::meshing::smooth::lift_worst;
 use crate::meshing::smooth::smooth_all;
 use crate::meshing::smooth::wish;
 use crate::meshing::triangulate::NONE;
@@ -25,6 +26,9 @@ pub(crate) enum Effort {
     Clean,
 }
 
+/// Below this scaled Jacobian a quad may cost its neighbours some shape.
+const POOR: f64 = 0.3;
+
 /// Finishes a draft; `None` if the result would break a promise.
 pub(crate) fn finish(
     mut draft: Draft,
@@ -33,15 +37,15 @@ pub(crate) fn finish(
     effort: Effort,
 ) -> Option<Patch> {
     if effort != Effort::Check {
-        improve(&mut draft, loops.size_m, effort);
+        improve(&mut draft, visits, loops.size_m, effort);
     }
     let patch = merge_visits(draft, visits, loops);
     check(loops, &patch).is_ok().then_some(patch)
 }
 
 /// Works on all quads that are not settled.
-pub(crate) fn improve(draft: &mut Draft, size_m: f64, effort: Effort) {
-    let mut kernel = Kernel::of(draft);
+pub(crate) fn improve(draft: &mut Draft, visits: &Visits, size_m: f64, effort: Effort) {
+    let mut kernel = Kernel::of(draft, visits);
     wish(&mut kernel, size_m);
     let mut cleaner = Cleaner::new(kernel);
     if effort == Effort::Clean {
@@ -63,6 +67,7 @@ pub(crate) fn improve(draft: &mut Draft, size_m: f64, effort: Effort) {
         cleaner.run(Pass::Rescue(0.4), 3);
     }
     smooth(&mut cleaner, 6, 30);
+    lift_worst(&mut cleaner.kernel, POOR, 5);
     cleaner.kernel.store(draft);
 }
 

@@ -9,6 +9,7 @@
 use crate::geometry::point::Xy;
 use crate::meshing::draft::Draft;
 use crate::meshing::triangulate::NONE;
+use crate::meshing::visits::Visits;
 use smallvec::SmallVec;
 
 /// A short list of quads or nodes: an edit rarely touches more than eight.
@@ -58,7 +59,7 @@ pub(crate) fn before(side: u32) -> u32 {
 impl Kernel {
     /// Reads `draft.quads[draft.settled..]`. A node where the outline touches itself becomes one
     /// node a sector.
-    pub fn of(draft: &Draft) -> Kernel {
+    pub fn of(draft: &Draft, visits: &Visits) -> Kernel {
         let zone = &draft.quads[draft.settled..];
         let mut local = vec![NONE; draft.nodes.len()];
         let mut kernel = Kernel {
@@ -82,7 +83,7 @@ impl Kernel {
             });
             kernel.quads.push(corners);
         }
-        kernel.find_twins();
+        kernel.find_twins(visits);
         kernel.find_spokes();
         kernel
     }
@@ -129,10 +130,15 @@ impl Kernel {
             .extend(alive.map(|quad| quad.map(|node| number[node as usize])));
     }
 
-    fn find_twins(&mut self) {
+    fn find_twins(&mut self, visits: &Visits) {
         let mut edges: Vec<(u64, u32)> = Vec::with_capacity(4 * self.quads.len());
         for side in 0..4 * self.quads.len() as u32 {
             let (a, b) = (self.start(side), self.end(side));
+            // The two sides of a line of one edge join the same two visits, and are not twins.
+            let [from, to] = [a, b].map(|node| self.origin[node as usize]);
+            if (from.max(to) as usize) < visits.len() && visits.next(from) == to {
+                continue;
+            }
             edges.push((u64::from(a.min(b)) << 32 | u64::from(a.max(b)), side));
         }
         edges.sort_unstable();
@@ -341,11 +347,17 @@ fn partners(new: &[[u32; 4]], outline: &[(u32, u32, u32)]) -> Option<Few<Partner
     let mut outer = 0;
     for k in 0..4 * new.len() {
         let (start, end) = edge(k);
+        let on = |a: u32, b: u32| outline.iter().find(|&&(from, to, _)| (from, to) == (a, b));
         let mut inside = (0..4 * new.len()).filter(|&j| edge(j) == (end, start));
-        let outside = outline.iter().find(|&&(a, b, _)| (a, b) == (start, end));
-        match (inside.next(), inside.next(), outside) {
-            (Some(other), None, None) => partners.push(Partner::Inside(other)),
-            (None, None, Some(&(_, _, twin))) => {
+        let (first, second) = (inside.next(), inside.next());
+        match (first, on(start, end)) {
+            // Both directions are on the outline at a line of one edge.
+            (Some(_), Some(&(_, _, twin))) if on(end, start).is_some() => {
+                partners.push(Partner::Outside(twin));
+                outer += 1;
+            }
+            (Some(other), None) if second.is_none() => partners.push(Partner::Inside(other)),
+            (None, Some(&(_, _, twin))) => {
                 partners.push(Partner::Outside(twin));
                 outer += 1;
             }

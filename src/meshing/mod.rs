@@ -110,6 +110,7 @@ pub struct Meshed {
 /// touch where they should not, or have an odd number of edges).
 pub fn mesh(loops: &Loops, options: &Options) -> Result<Meshed, Defect> {
     let visits = Visits::of(loops);
+    let bound = score::bound(&visits);
     let mut best: Option<(Patch, Score)> = None;
     for &method in &options.methods {
         let Some(patch) = draft(method, &visits, loops)
@@ -117,7 +118,7 @@ pub fn mesh(loops: &Loops, options: &Options) -> Result<Meshed, Defect> {
         else {
             continue;
         };
-        let score = Score::of(&patch, loops.nodes.len(), loops.size_m);
+        let score = Score::of(&patch, loops.nodes.len(), loops.size_m, bound);
         if best
             .as_ref()
             .is_none_or(|best| score.rank() > best.1.rank())
@@ -135,7 +136,7 @@ pub fn mesh(loops: &Loops, options: &Options) -> Result<Meshed, Defect> {
         Some(best) => best,
         None => {
             let patch = last_resort(&visits, loops)?;
-            let score = Score::of(&patch, loops.nodes.len(), loops.size_m);
+            let score = Score::of(&patch, loops.nodes.len(), loops.size_m, bound);
             (patch, score)
         }
     };

@@ -3,6 +3,8 @@
 use crate::geometry::quad::hydraulic_size_m;
 use crate::geometry::quad::scaled_jacobian;
 use crate::meshing::patch::Patch;
+use crate::meshing::visits::Visits;
+use std::f64::consts::FRAC_PI_2;
 
 /// What a patch is judged by.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,18 +17,21 @@ pub struct Score {
     pub irregular: f64,
     /// Least hydraulic size / wished size, at most 1: what bounds the time step of a solver.
     pub size: f64,
+    /// No mesh can have a greater least scaled Jacobian: the sine of the sharpest walk corner.
+    pub bound: f64,
     /// Index of the quad with the least scaled Jacobian.
     pub worst_quad: u32,
 }
 
 impl Score {
     /// Measures a patch of which `boundary` nodes lie on the walks.
-    pub fn of(patch: &Patch, boundary: usize, size_m: f64) -> Score {
+    pub(crate) fn of(patch: &Patch, boundary: usize, size_m: f64, bound: f64) -> Score {
         let mut score = Score {
             least: 1.0,
             mean: 0.0,
             irregular: 0.0,
             size: 1.0,
+            bound,
             worst_quad: 0,
         };
         let mut valence = vec![0_u32; patch.nodes.len()];
@@ -52,10 +57,16 @@ impl Score {
 
     /// The rank: higher is better; 1 for a perfect lattice.
     ///
-    /// The least Jacobian counts most while it is poor, because one bad element spoils a patch;
+    /// The least Jacobian, as a share of what the sharpest corner allows, counts most while it is poor, because one bad element spoils a patch;
     /// above .6 it hardly matters, then mean shape, regularity and the time step decide.
     pub fn rank(&self) -> f64 {
-        let least = self.least.min(0.6) / 0.6;
-        0.4 * least + 0.35 * self.mean + 0.15 * (1.0 - self.irregular) + 0.1 * self.size
+        let least = self.least / self.bound.min(0.6);
+        0.4 * least.min(1.0) + 0.35 * self.mean + 0.15 * (1.0 - self.irregular) + 0.1 * self.size
     }
+}
+
+/// The sine of the sharpest walk corner, 1 if none is sharper than a right angle.
+pub(crate) fn bound(visits: &Visits) -> f64 {
+    let angles = (0..visits.len() as u32).map(|visit| visits.angle(visit));
+    angles.fold(FRAC_PI_2, f64::min).sin()
 }

@@ -17,6 +17,7 @@ use crate::meshing::kernel::Few;
 use crate::meshing::kernel::Kernel;
 use crate::meshing::kernel::after;
 use crate::meshing::kernel::before;
+use crate::meshing::kernel::quad_of;
 use crate::meshing::triangulate::NONE;
 
 /// Weight of size against shape.
@@ -115,7 +116,67 @@ pub(crate) fn smooth_few(kernel: &mut Kernel, nodes: &[u32], phase: Phase, sweep
     }
 }
 
-/// One Newton step of one node; returns how far it moved, in wished lengths.
+/// Raises the least scaled Jacobian around the free nodes of quads below `below`, by compass search:
+/// the few worst quads are ruled by lengths that the wished ones know nothing of.
+pub(crate) fn lift_worst(kernel: &mut Kernel, below: f64, sweeps: usize) {
+    for _ in 0..sweeps {
+        let poor = |&quad: &u32| kernel.lives(quad) && kernel.quality(quad) < below;
+        let quads: Vec<u32> = (0..kernel.quads.len() as u32).filter(poor).collect();
+        let mut nodes: Vec<u32> = quads
+            .iter()
+            .flat_map(|&quad| kernel.quads[quad as usize])
+            .collect();
+        nodes.retain(|&node| !kernel.held[node as usize]);
+        nodes.sort_unstable();
+        nodes.dedup();
+        let mut any = false;
+        for node in nodes {
+            any |= lift(kernel, node);
+        }
+        if !any {
+            break;
+        }
+    }
+}
+
+/// Compass search of one node for a better least quality of its quads; true if it moved.
+fn lift(kernel: &mut Kernel, node: u32) -> bool {
+    let spokes = kernel.spokes(node);
+    let least = |kernel: &Kernel| {
+        let quality = |&side: &u32| kernel.quality(quad_of(side));
+        spokes.iter().map(quality).fold(f64::INFINITY, f64::min)
+    };
+    let shortest = spokes.iter().map(|&side| {
+        distance(
+            kernel.nodes[node as usize],
+            kernel.nodes[kernel.end(side) as usize],
+        )
+    });
+    let mut step = 0.3 * shortest.fold(f64::INFINITY, f64::min);
+    let start = least(kernel);
+    let mut best = start;
+    for _ in 0..6 {
+        let at = kernel.nodes[node as usize];
+        let mut to = at;
+        for k in 0..8 {
+            let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_4).sin_cos();
+            kernel.nodes[node as usize] = [at[0] + step * cos, at[1] + step * sin];
+            let quality = least(kernel);
+            if quality > best {
+                best = quality;
+                to = kernel.nodes[node as usize];
+            }
+        }
+        kernel.nodes[node as usize] = to;
+        if to == at {
+            step *= 0.4;
+        }
+    }
+    best > start + 1e-3
+}
+
+/// One Newton step of one node; returns how far it moved, in wished lengths. Corners that are not
+/// inverted stay so: small ones lie below epsilon, where the barrier alone would let them through.
 fn relax(kernel: &mut Kernel, node: u32, phase: Phase) -> f64 {
     let star = Star::of(kernel, node);
     let at = kernel.nodes[node as usize];
@@ -126,7 +187,8 @@ fn relax(kernel: &mut Kernel, node: u32, phase: Phase) -> f64 {
     let mut factor = (0.7 * length / reach).min(1.0);
     for _ in 0..6 {
         let to = [at[0] + factor * step[0], at[1] + factor * step[1]];
-        if star.energy(to, phase) < local.value {
+        let (value, least) = star.energy(to, phase);
+        if value < local.value && (least > 0.0 || local.least <= 0.0) {
             kernel.nodes[node as usize] = to;
             return factor * reach / length;
         }
@@ -152,9 +214,10 @@ struct StarQuad {
 }
 
 /// Value, gradient and Hessian (xx, xy, yy) of the energy around a node.
-#[derive(Default)]
 struct Expansion {
     value: f64,
+    /// The least d.
+    least: f64,
     gradient: Xy,
     hessian: [f64; 3],
 }
@@ -187,8 +250,10 @@ impl Star {
         }
     }
 
-    fn energy(&self, at: Xy, phase: Phase) -> f64 {
+    /// The energy and the least d with the node at `at`.
+    fn energy(&self, at: Xy, phase: Phase) -> (f64, f64) {
         let mut sum = 0.0;
+        let mut least = f64::INFINITY;
         for quad in &self.quads {
             let own = Corner::of(
                 minus(quad.next, at),
@@ -209,12 +274,18 @@ impl Star {
                 phase,
             );
             sum += own.value(phase) + next.value(phase) + last.value(phase);
+            least = least.min(own.d).min(next.d).min(last.d);
         }
-        sum
+        (sum, least)
     }
 
     fn expand(&self, at: Xy, phase: Phase) -> Expansion {
-        let mut sum = Expansion::default();
+        let mut sum = Expansion {
+            value: 0.0,
+            least: f64::INFINITY,
+            gradient: [0.0; 2],
+            hessian: [0.0; 3],
+        };
         for quad in &self.quads {
             let (to_next, to_last) = (minus(quad.next, at), minus(quad.last, at));
             let own = Corner::of(to_next, to_last, self.scale, phase);
@@ -283,6 +354,7 @@ impl Corner {
         phase: Phase,
         sum: &mut Expansion,
     ) {
+        sum.least = sum.least.min(self.d);
         let g = [scale * turn[0], scale * turn[1]];
         let dn = [
             scale * pull[0] + SIZE * self.d * g[0],

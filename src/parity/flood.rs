@@ -208,8 +208,13 @@ impl<'a> Flood<'a> {
     }
 
     pub fn freeze(&mut self, region: u32) {
+        let drew_back = self.regions[region as usize].radius.slope < 0;
         self.set_slope(region, 0);
-        self.schedule_nodes(region);
+        // What was growing rings too early now and is looked at again then; what was shrinking
+        // did not listen for others.
+        if drew_back {
+            self.schedule_nodes(region);
+        }
     }
 
     pub fn shrink(&mut self, region: u32) {
@@ -223,11 +228,16 @@ impl<'a> Flood<'a> {
     /// Wraps the regions of an odd cycle into a new one, growing from radius 0.
     pub fn wrap(&mut self, members: Vec<Member>) -> u32 {
         let blossom = self.push_region(Vec::new(), Vec::new());
+        let mut turned = Vec::new();
         for member in &members {
-            self.set_slope(member.region, 0);
             let radius = self.radius(member.region);
             let region = &mut self.regions[member.region as usize];
             (region.parent, region.tree, region.mate) = (blossom, NONE, NONE);
+            // The reach of what was growing goes on as before, so do its alarms.
+            if region.radius.slope <= 0 {
+                turned.push(member.region);
+            }
+            self.set_slope(member.region, 0);
             for node in self.nodes_within(member.region) {
                 let spot = &mut self.spots[node as usize];
                 spot.top = blossom;
@@ -235,17 +245,21 @@ impl<'a> Flood<'a> {
             }
         }
         self.regions[blossom as usize].members = members;
-        self.schedule_nodes(blossom);
+        for region in turned {
+            self.schedule_nodes(region);
+        }
         blossom
     }
 
-    /// Takes a blossom of radius 0 apart; the caller sets the members growing, frozen, shrinking.
+    /// Takes a shrinking blossom of radius 0 apart; its members go on shrinking until the caller
+    /// says otherwise.
     pub fn unwrap(&mut self, blossom: u32) -> Vec<Member> {
         let members = std::mem::take(&mut self.regions[blossom as usize].members);
         self.set_slope(blossom, 0);
         self.regions[blossom as usize].alive = false;
         for member in &members {
             let radius = self.radius(member.region);
+            self.set_slope(member.region, -1);
             self.regions[member.region as usize].parent = NONE;
             for node in self.nodes_within(member.region) {
                 let spot = &mut self.spots[node as usize];

@@ -2,30 +2,43 @@
 
 use crate::parity::cuts::Cuts;
 use crate::parity::flood::Touch;
+use crate::parity::graph::Edge;
 use crate::parity::graph::Graph;
 use crate::parity::graph::OUTSIDE;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Shortest paths between all pairs, an edge on two of them on none.
-pub fn along_pairs(graph: &Graph, pairs: &[Touch]) -> Vec<bool> {
-    let mut chosen = vec![false; graph.edges.len()];
+/// Shortest paths between all pairs of a finished matching, an edge on two of them on none.
+///
+/// They run along edges without slack (complementary slackness), so only those are searched.
+pub fn along_pairs(graph: &Graph, cuts: &Cuts, pairs: &[Touch]) -> Vec<bool> {
+    let tight = (graph.edges.iter().enumerate())
+        .filter(|(_, edge)| cuts.slack2(edge) == 0)
+        .map(|(id, edge)| Edge {
+            label: id as u32,
+            ..*edge
+        })
+        .collect();
+    let tight = Graph::new(graph.odd.clone(), tight);
+    let nowhere = Seen {
+        stamp: 0,
+        distance: 0,
+        edge: 0,
+    };
     let mut search = Search {
-        seen: vec![
-            Seen {
-                stamp: 0,
-                distance: 0,
-                edge: 0
-            };
-            2 * graph.odd.len()
-        ],
+        seen: vec![nowhere; 2 * graph.odd.len()],
         stamp: 0,
         heap: BinaryHeap::new(),
     };
+    let mut chosen = vec![false; tight.edges.len()];
     for pair in pairs {
-        search.flip_path(graph, *pair, &mut chosen);
+        search.flip_path(&tight, *pair, &mut chosen);
     }
-    chosen
+    let mut all = vec![false; graph.edges.len()];
+    for (edge, chosen) in tight.edges.iter().zip(chosen) {
+        all[edge.label as usize] = chosen;
+    }
+    all
 }
 
 #[derive(Clone, Copy)]

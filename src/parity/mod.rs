@@ -104,10 +104,10 @@ pub fn balance(partition: &Partition, goals: &Goals, options: &Options) -> Resul
         (balance.rows, balance.columns) = (solved.rows, solved.columns);
         balance.claimed = Some((programme.base as f64 + solved.claimed) * COST_UNIT);
         balance.branched = solved.branched;
-        let better = weight(graph, &solved.chosen) <= weight(graph, &chosen);
-        if better && makes_even(graph, &solved.chosen) {
-            chosen = solved.chosen;
-        }
+        let sound = |other: &Vec<bool>| {
+            weight(graph, other) <= weight(graph, &chosen) && makes_even(graph, other)
+        };
+        chosen = solved.chosen.filter(sound).unwrap_or(chosen);
     }
     let objective = programme.base + weight(graph, &chosen);
     let bound = programme.base + (join.cuts.bound2() + 1) / 2;
@@ -149,7 +149,7 @@ pub fn minimum_join(graph: &Graph, events_max: u64) -> Join {
     let matching = Matching::solve(graph, events_max);
     let cuts = Cuts::of(&matching.flood, graph.odd.len());
     let chosen = match matching.open {
-        0 => join::along_pairs(graph, &matching.pairs()),
+        0 => join::along_pairs(graph, &cuts, &matching.pairs()),
         _ => join::along_forest(graph, &cuts),
     };
     let events = matching.flood.events;

@@ -10,8 +10,8 @@ use highs::Sense;
 
 /// What HiGHS says.
 pub struct Solved {
-    /// Edges of the graph that it chose; not to be trusted.
-    pub chosen: Vec<bool>,
+    /// Edges of the graph that it chose, if its solution is whole; not to be trusted.
+    pub chosen: Option<Vec<bool>>,
     /// Optimum that it claims, in units of weight.
     pub claimed: f64,
     /// Rows of the programme.
@@ -30,7 +30,7 @@ pub fn solve(graph: &Graph, cuts: &Cuts, slack2_max: i64, nodes_max: i32) -> Opt
         .filter(|&id| cuts.slack2(&graph.edges[id as usize]) <= slack2_max)
         .collect();
     let mut solved = Solved {
-        chosen: vec![false; graph.edges.len()],
+        chosen: None,
         claimed: 0.0,
         rows: cuts.value2.len() as u32,
         columns: columns.len() as u32,
@@ -39,19 +39,27 @@ pub fn solve(graph: &Graph, cuts: &Cuts, slack2_max: i64, nodes_max: i32) -> Opt
     if cuts.value2.is_empty() {
         return Some(solved);
     }
-    for integral in [false, true] {
+    // With no gap left a linear optimum in pieces is one of several: it confirms what is known,
+    // and there is nothing to branch for.
+    let attempts: &[bool] = if slack2_max == 0 {
+        &[false]
+    } else {
+        &[false, true]
+    };
+    for &integral in attempts {
         let (values, claimed) = run(graph, cuts, &columns, integral, nodes_max)?;
         solved.claimed = claimed;
         solved.branched = integral;
-        let whole = values.iter().all(|&x| (x - x.round()).abs() < 1e-6);
-        if whole {
+        if values.iter().all(|&x| (x - x.round()).abs() < 1e-6) {
+            let mut chosen = vec![false; graph.edges.len()];
             for (&id, &x) in columns.iter().zip(&values) {
-                solved.chosen[id as usize] = x.round() as i64 % 2 == 1;
+                chosen[id as usize] = x.round() as i64 % 2 == 1;
             }
-            return Some(solved);
+            solved.chosen = Some(chosen);
+            break;
         }
     }
-    None
+    Some(solved)
 }
 
 fn run(

@@ -4,11 +4,11 @@ use crate::domain::line::Domain;
 use crate::geometry::point::Point;
 use crate::geometry::point::Xy;
 use crate::noding::arrangement::Arrangement;
+use crate::noding::rim::rim_side;
 use crate::partition::chain::beginnings;
 use crate::partition::chain::chains;
 use crate::partition::error::Error;
 use crate::partition::nest::halves_below;
-use crate::partition::rim::rim_side;
 use crate::partition::star::HalfEdge;
 use crate::partition::star::tail;
 use crate::partition::subdomains::Curve;
@@ -138,8 +138,11 @@ fn faces(
         })
         .collect();
     inner.sort_unstable();
-    let nodes: Vec<u32> = inner.iter().map(|&(node, _)| node).collect();
-    let below = halves_below(arrangement, &nodes);
+    let starts: Vec<Point> = inner
+        .iter()
+        .map(|&(node, _)| arrangement.points[node as usize])
+        .collect();
+    let below = halves_below(arrangement, &starts);
     let mut face: Vec<u32> = (0..walks.len() as u32).collect();
     for (&(node, w), below) in inner.iter().zip(below) {
         let seen = below.map_or(u32::MAX, |half| walk_of[half as usize]);

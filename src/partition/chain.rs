@@ -2,7 +2,7 @@
 
 use crate::domain::line::Domain;
 use crate::noding::arrangement::Arrangement;
-use crate::partition::rim::rim_side;
+use crate::noding::rim::rim_side;
 use crate::partition::star::HalfEdge;
 use crate::partition::star::Stars;
 use crate::partition::star::direction;
@@ -93,6 +93,10 @@ fn is_junction(
         return true;
     };
     let pieces = |half: HalfEdge| arrangement.pieces_of(half >> 1);
+    if pieces(g).is_empty() && pieces(h).is_empty() {
+        // A seam follows the lattice from node to node: each stretch has a count of its own.
+        return true;
+    }
     let lines = |half: HalfEdge| pieces(half).iter().map(|piece| piece.line);
     let is_rim = |half: HalfEdge| rim_side(domain, pieces(half)) != 0;
     // Pieces are sorted by line, and one line may run along an edge more than once.

@@ -3,8 +3,8 @@
 use crate::domain::line::Domain;
 use crate::geometry::predicates::by_angle;
 use crate::noding::arrangement::Arrangement;
+use crate::noding::rim::rim_side;
 use crate::partition::assemble::area2;
-use crate::partition::rim::rim_side;
 use crate::partition::star::HalfEdge;
 use crate::partition::star::Stars;
 use crate::partition::star::direction;

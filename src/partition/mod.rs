@@ -21,8 +21,12 @@
 //! 3. `nest`: which sub-domain is an inner walk in? One sweep over x with all edges that cross the
 //!    sweep line in vertical order: the edge right below the least node of the walk has it above. It
 //!    belongs to an outer walk or to an inner one that began earlier, so no union-find is needed.
-//! 4. `chain`: maximal chains of edges between junctions become curves.
+//! 4. `chain`: maximal chains of edges between junctions become curves. A junction is a node that is
+//!    not simply passed through: degree other than 2, change of source lines or of rim, a corner,
+//!    any node between two seam edges.
 //! 5. `assemble`: walks of half-edges become walks of half-curves, with canonical numbers.
+//!
+//! `locate` asks the sweep of step 3 where any points lie.
 //!
 //! # Cost
 //! O(n log n) time in n edges, about 120 bytes an edge at the peak. Nesting is one sweep, whatever
@@ -38,8 +42,8 @@ pub mod subdomains;
 
 mod assemble;
 mod chain;
+mod locate;
 mod nest;
-mod rim;
 mod star;
 mod walk;
 
@@ -49,6 +53,8 @@ use crate::partition::error::Error;
 use crate::partition::subdomains::Partition;
 
 pub use assemble::assemble;
+pub use locate::sides;
+pub use locate::subdomains_at;
 pub use star::HalfEdge;
 pub use walk::Fragment;
 pub use walk::Tile;

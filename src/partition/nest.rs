@@ -44,13 +44,13 @@ impl PartialEq for Strand {
 
 impl Eq for Strand {}
 
-/// For each of `nodes` (ascending), the half-edge directly below it, with the node on its left; or
-/// `None` if there is none. No edge may end at any of them in the order of the points, as is so at
-/// the least node of an inner walk.
+/// For each of `points` (ascending), the half-edge directly below it, with the point on its left; or
+/// `None` if there is none. They lie on no edge, but may be a node at which no edge ends in the
+/// order of the points, as is the least node of an inner walk.
 ///
-/// The sweep line runs through one node after the other in their order, by x and then y: as if it
+/// The sweep line runs through one point after the other in their order, by x and then y: as if it
 /// leaned a little to the right at its foot. Vertical edges need no care then.
-pub(super) fn halves_below(arrangement: &Arrangement, nodes: &[u32]) -> Vec<Option<HalfEdge>> {
+pub(super) fn halves_below(arrangement: &Arrangement, points: &[Point]) -> Vec<Option<HalfEdge>> {
     let strand = |edge: u32| {
         let [a, b] = arrangement.edges[edge as usize].map(|node| arrangement.points[node as usize]);
         Strand { a, b, edge }
@@ -59,17 +59,20 @@ pub(super) fn halves_below(arrangement: &Arrangement, nodes: &[u32]) -> Vec<Opti
     by_end.sort_by_key(|&edge| arrangement.edges[edge as usize][1]);
     let mut line = BTreeSet::new();
     let (mut begun, mut ended) = (0, 0);
-    let mut below = Vec::with_capacity(nodes.len());
-    for &node in nodes {
+    let mut below = Vec::with_capacity(points.len());
+    for &at in points {
+        // Nodes are sorted by their points.
+        let node = arrangement.points.partition_point(|&it| it < at) as u32;
         while begun < arrangement.edges.len() && arrangement.edges[begun][0] < node {
             // All that ends up to where this one begins has to leave before it enters.
             let from = arrangement.edges[begun][0];
-            ended = end_strands(arrangement, &by_end, ended, from, &mut line);
+            ended = end_strands(arrangement, &by_end, ended, from + 1, &mut line);
             line.insert(strand(begun as u32));
             begun += 1;
         }
-        ended = end_strands(arrangement, &by_end, ended, node, &mut line);
-        let at = arrangement.points[node as usize];
+        let is_node = arrangement.points.get(node as usize) == Some(&at);
+        let until = node + u32::from(is_node);
+        ended = end_strands(arrangement, &by_end, ended, until, &mut line);
         let here = Strand {
             a: at,
             b: at,
@@ -81,7 +84,7 @@ pub(super) fn halves_below(arrangement: &Arrangement, nodes: &[u32]) -> Vec<Opti
     below
 }
 
-/// Takes the edges that end at or before node `until` off the line; `by_end[..ended]` are off.
+/// Takes the edges that end before node `until` off the line; `by_end[..ended]` are off.
 fn end_strands(
     arrangement: &Arrangement,
     by_end: &[u32],
@@ -89,7 +92,7 @@ fn end_strands(
     until: u32,
     line: &mut BTreeSet<Strand>,
 ) -> usize {
-    while ended < by_end.len() && arrangement.edges[by_end[ended] as usize][1] <= until {
+    while ended < by_end.len() && arrangement.edges[by_end[ended] as usize][1] < until {
         let edge = by_end[ended];
         let [a, b] = arrangement.edges[edge as usize].map(|node| arrangement.points[node as usize]);
         line.remove(&Strand { a, b, edge });

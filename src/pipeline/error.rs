@@ -1,6 +1,7 @@
 //! Why a run ended early, and which exit code that is.
 
 use crate::chunk;
+use crate::export;
 use crate::ingest;
 use crate::parity;
 use crate::partition;
@@ -19,6 +20,8 @@ pub enum Error {
     Parity(parity::error::Error),
     /// The output cannot be written or read.
     Chunk(chunk::error::Error),
+    /// An export cannot be written.
+    Export(export::error::Error),
     /// A file beside the output cannot be written.
     Write(std::path::PathBuf, std::io::Error),
 }
@@ -32,7 +35,9 @@ impl Error {
             Error::Chunk(chunk::error::Error::Exists(_)) => 2,
             Error::Chunk(it) if it.is_broken_mesh() => 1,
             Error::Chunk(_) => 3,
-            Error::Write(..) => 3,
+            Error::Export(export::error::Error::Mesh(it)) if it.is_broken_mesh() => 1,
+            Error::Export(export::error::Error::TooLarge { .. }) => 2,
+            Error::Export(_) | Error::Write(..) => 3,
         }
     }
 }
@@ -45,9 +50,13 @@ impl fmt::Display for Error {
             Error::Partition(it) => it.fmt(to),
             Error::Parity(it) => it.fmt(to),
             Error::Chunk(it) => it.fmt(to),
+            Error::Export(it) => it.fmt(to),
             Error::Write(path, it) => {
                 let path = path.display();
-                write!(to, "{path}: cannot be written: {it}; free space or choose another place")
+                write!(
+                    to,
+                    "{path}: cannot be written: {it}; free space or choose another place"
+                )
             }
         }
     }
@@ -79,3 +88,8 @@ impl From<chunk::error::Error> for Error {
     }
 }
 
+impl From<export::error::Error> for Error {
+    fn from(it: export::error::Error) -> Error {
+        Error::Export(it)
+    }
+}

@@ -27,7 +27,7 @@ pub(super) fn frame(plan: &Plan) -> Frame {
         subdomains: plan.partition.subdomains.clone(),
         size_m: vec![plan.sizes.default_m; plan.partition.subdomains.len()],
         goals: plan.goals.clone(),
-        certificate: Some(certificate(plan)),
+        certificate: Some(Certificate::from(plan.balance.clone())),
         ..Frame::default()
     };
     for (c, curve) in plan.partition.curves.iter().enumerate() {
@@ -46,15 +46,6 @@ pub(super) fn frame(plan: &Plan) -> Frame {
     frame
 }
 
-fn certificate(plan: &Plan) -> Certificate {
-    Certificate {
-        objective: plan.balance.objective,
-        base: plan.balance.base,
-        bound: plan.balance.bound,
-        odd_sets: Vec::new(),
-    }
-}
-
 /// The pieces of each mesh edge of curve `c`, whose nodes are `ids`: those of the edge of the arrangement that it is a part of,
 /// with stations in proportion.
 fn push_pieces(
@@ -68,7 +59,10 @@ fn push_pieces(
     let is_fixed = |id: u64| id < arrangement.points.len() as u64;
     let mut from = 0;
     for (step, &edge) in curve.edges.iter().enumerate() {
-        let parts = 1 + (ids[from + 1..].iter()).take_while(|&&id| !is_fixed(id)).count();
+        let parts = 1
+            + (ids[from + 1..].iter())
+                .take_while(|&&id| !is_fixed(id))
+                .count();
         let turned = curve.nodes[step] > curve.nodes[step + 1];
         debug_assert_eq!(ids[from], u64::from(curve.nodes[step]));
         for k in 0..parts {

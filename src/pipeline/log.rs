@@ -31,7 +31,10 @@ impl Log {
             seconds: it.seconds,
             note: it.note.clone(),
         };
-        Log { stages: stages.iter().map(stage).collect(), peak_memory_bytes }
+        Log {
+            stages: stages.iter().map(stage).collect(),
+            peak_memory_bytes,
+        }
     }
 
     /// Writes the log into the mesh folder.

@@ -64,15 +64,26 @@ pub fn estimate(job: &Job, listener: Listener) -> Result<Estimate, Error> {
     pool(job).install(|| {
         let watch = Stopwatch::new(listener);
         let plan = plan::plan(job, &watch)?;
-        Ok(Estimate::new(&plan, watch.stages(), rayon::current_num_threads()))
+        Ok(Estimate::new(
+            &plan,
+            watch.stages(),
+            rayon::current_num_threads(),
+        ))
     })
 }
 
 fn build_here(job: &Job, listener: Listener) -> Result<Outcome, Error> {
     let watch = Stopwatch::new(listener);
     let plan = plan::plan(job, &watch)?;
-    let place = Place { epsg: plan.domain.epsg, grid: plan.domain.grid };
-    let existing = if job.force { Existing::Replace } else { Existing::Refuse };
+    let place = Place {
+        epsg: plan.domain.epsg,
+        grid: plan.domain.grid,
+    };
+    let existing = if job.force {
+        Existing::Replace
+    } else {
+        Existing::Refuse
+    };
     let writer = Writer::create(&job.output, existing, place)?;
     watch.stage("frame", 1, |_| -> Result<_, Error> {
         let frame = frame::frame(&plan);
@@ -80,12 +91,16 @@ fn build_here(job: &Job, listener: Listener) -> Result<Outcome, Error> {
         Ok(((), format!("{} nodes on lines", frame.nodes.len())))
     })?;
     let workers = rayon::current_num_threads();
-    let written = watch.stage("meshing", plan.quads_expected(), |count| -> Result<_, Error> {
-        let written = patches::mesh_all(&plan, &writer, workers, count)?;
-        let patches = written.receipts.iter().flat_map(|it| &it.patches);
-        let quads: u64 = patches.map(|it| it.quads).sum();
-        Ok((written, format!("{quads} quads")))
-    })?;
+    let written = watch.stage(
+        "meshing",
+        plan.quads_expected(),
+        |count| -> Result<_, Error> {
+            let written = patches::mesh_all(&plan, &writer, workers, count)?;
+            let patches = written.receipts.iter().flat_map(|it| &it.patches);
+            let quads: u64 = patches.map(|it| it.quads).sum();
+            Ok((written, format!("{quads} quads")))
+        },
+    )?;
     let mut findings = plan.findings.clone();
     findings.extend(written.findings);
     writer.write_lines(&LineWork {
@@ -106,7 +121,11 @@ fn build_here(job: &Job, listener: Listener) -> Result<Outcome, Error> {
     )?;
     let verdict = watch.stage("check", 1, |_| -> Result<_, Error> {
         let verdict = check::check(&Mesh::open(&job.output)?, &check::OPTIONS);
-        let note = if verdict.holds() { "every promise holds" } else { "A PROMISE IS BROKEN" };
+        let note = if verdict.holds() {
+            "every promise holds"
+        } else {
+            "A PROMISE IS BROKEN"
+        };
         Ok((verdict, note.to_string()))
     })?;
     let outcome = Outcome::new(job, &plan, &findings, verdict, watch.stages());
@@ -129,6 +148,8 @@ fn preflight(job: &Job) -> Result<(), Error> {
 }
 
 fn pool(job: &Job) -> rayon::ThreadPool {
-    (rayon::ThreadPoolBuilder::new().num_threads(job.threads).build())
-        .expect("the system gives a few threads")
+    (rayon::ThreadPoolBuilder::new()
+        .num_threads(job.threads)
+        .build())
+    .expect("the system gives a few threads")
 }

@@ -6,7 +6,6 @@ use crate::chunk::record::ChunkReceipt;
 use crate::chunk::record::PatchRecord;
 use crate::chunk::writer::Writer;
 use crate::domain::finding::Finding;
-use crate::geometry::point::Xy;
 use crate::meshing;
 use crate::meshing::patch::Loops;
 use crate::partition::subdomains::SubdomainId;
@@ -35,7 +34,10 @@ pub(super) fn mesh_all(
     workers: usize,
     count: &(dyn Fn(u64) + Sync),
 ) -> Result<Written, Error> {
-    let mut written = Written { receipts: Vec::new(), findings: Vec::new() };
+    let mut written = Written {
+        receipts: Vec::new(),
+        findings: Vec::new(),
+    };
     let mut waiting: Vec<PatchRecord> = Vec::new();
     let mut bytes = 0;
     let subdomains = plan.partition.subdomains.len() as u32;
@@ -79,7 +81,13 @@ fn mesh_one(plan: &Plan, subdomain: SubdomainId) -> Meshed {
         lattice_origin: seams.then_some([0.0, 0.0]),
         on_seam: walked.on_seam,
     };
-    let options = meshing::Options { methods: vec![meshing::patch::Method::Strip, meshing::patch::Method::Indirect], good_enough: 0.9 };
+    let options = meshing::Options {
+        methods: vec![
+            meshing::patch::Method::Strip,
+            meshing::patch::Method::Indirect,
+        ],
+        good_enough: 0.9,
+    };
     let meshed = meshing::mesh(&loops, &options).unwrap();
     let findings = Vec::new();
     Meshed {

@@ -24,6 +24,7 @@ use crate::pipeline::error::Error;
 use crate::pipeline::job::Job;
 use crate::pipeline::progress::Stopwatch;
 use crate::pipeline::tiles;
+use crate::seams;
 
 /// The whole city before its sub-domains are meshed. Its size follows the input and the number of
 /// nodes on curves, never the number of quads.
@@ -69,7 +70,9 @@ impl Plan {
     pub fn quads_expected(&self) -> u64 {
         let cell_m2 = self.sizes.default_m * self.sizes.default_m;
         let of = |area_m2: f64| (area_m2 / cell_m2).ceil() as u64;
-        (self.partition.subdomains.iter()).map(|it| of(it.area_m2)).sum()
+        (self.partition.subdomains.iter())
+            .map(|it| of(it.area_m2))
+            .sum()
     }
 }
 
@@ -87,7 +90,14 @@ pub(super) fn plan(job: &Job, watch: &Stopwatch) -> Result<Plan, Error> {
     let domain = read(job, watch, &mut findings)?;
     let sizes = sizes(job, &domain)?;
     let cleaned = clean(job, &domain, &sizes, watch, &mut findings)?;
-    let (arrangement, partition) = cut(job, &domain, &sizes, cleaned.arrangement, watch, &mut findings)?;
+    let (arrangement, partition) = cut(
+        job,
+        &domain,
+        &sizes,
+        cleaned.arrangement,
+        watch,
+        &mut findings,
+    )?;
     let (goals, balance) = balance(job, &domain, &sizes, &arrangement, &partition, watch)?;
     let first = boundary::numbering(&partition, &balance.counts, arrangement.points.len());
     let nodes = first[first.len() - 1];
@@ -113,9 +123,16 @@ pub(super) fn plan(job: &Job, watch: &Stopwatch) -> Result<Plan, Error> {
 
 fn read(job: &Job, watch: &Stopwatch, findings: &mut Vec<Finding>) -> Result<Domain, Error> {
     watch.stage("ingest", 1, |_| {
-        let options = ingest::Options { cell_m: job.cell_m, crs: job.crs };
+        let options = ingest::Options {
+            cell_m: job.cell_m,
+            crs: job.crs,
+        };
         let read = ingest::read(&job.input, &options)?;
-        let note = format!("{} lines, {} points", read.domain.lines.len(), read.points_read);
+        let note = format!(
+            "{} lines, {} points",
+            read.domain.lines.len(),
+            read.points_read
+        );
         findings.extend(read.findings);
         Ok((read.domain, note))
     })
@@ -129,7 +146,13 @@ fn sizes(job: &Job, domain: &Domain) -> Result<SizeWish, Error> {
         let Some(known) = known else {
             return Err(Error::Job(format!(
                 "sizes.{kind}: the input has no lines of this kind; it has {}",
-                domain.kinds.iter().filter(|it| !it.is_empty()).cloned().collect::<Vec<_>>().join(", ")
+                domain
+                    .kinds
+                    .iter()
+                    .filter(|it| !it.is_empty())
+                    .cloned()
+                    .collect::<Vec<_>>()
+                    .join(", ")
             )));
         };
         sizes.by_kind_m[known] = *size_m;
@@ -167,7 +190,9 @@ fn clean(
         Ok(((noded, clipped), note))
     })?;
     watch.stage("cleanup", 1, |_| {
-        let options = cleanup::Options { tolerance: cleanup::Tolerance::Metres(job.tolerance_in_force_m()) };
+        let options = cleanup::Options {
+            tolerance: cleanup::Tolerance::Metres(job.tolerance_in_force_m()),
+        };
         let made = cleanup::clean(domain, sizes, noded, &options);
         findings.extend(made.findings);
         let mut dropped: Vec<Dropped> = clipped.iter().map(clipped_stretch).collect();
@@ -209,10 +234,30 @@ fn cut(
     let tile_cells = tiles::tile_cells(job, domain);
     let partition = watch.stage("partition", 1, |_| -> Result<_, Error> {
         let made = tiles::partition(domain, &arrangement, tile_cells, job.corner_deg)?;
-        let note = format!("{} sub-domains, {} curves", made.subdomains.len(), made.curves.len());
+        let note = format!(
+            "{} sub-domains, {} curves",
+            made.subdomains.len(),
+            made.curves.len()
+        );
         Ok((made, note))
     })?;
-    Ok((arrangement, partition))
+    watch.stage("seams", 1, |_| -> Result<_, Error> {
+        let options = seams::Options {
+            budget_quads: f64::from(job.seam_budget_quads),
+        };
+        let seamed = seams::cut(domain, sizes, &arrangement, &partition, &options);
+        findings.extend(seamed.findings);
+        if seamed.cuts == 0 {
+            return Ok(((arrangement, partition), "none needed".to_string()));
+        }
+        let parts = tiles::partition(domain, &seamed.arrangement, tile_cells, job.corner_deg)?;
+        let note = format!(
+            "{} seam edges, {} sub-domains",
+            seamed.cuts,
+            parts.subdomains.len()
+        );
+        Ok(((seamed.arrangement, parts), note))
+    })
 }
 
 fn balance(
@@ -224,9 +269,20 @@ fn balance(
     watch: &Stopwatch,
 ) -> Result<(Goals, Balance), Error> {
     watch.stage("parity", 1, |_| {
-        let options = intervals::Options { corner_deg: job.corner_deg, upper_ratio: 2.5 };
+        let options = intervals::Options {
+            corner_deg: job.corner_deg,
+            upper_ratio: 2.5,
+        };
         let goals = intervals::plan(domain, sizes, arrangement, partition, &options);
-        let balance = parity::balance(partition, &goals, &parity::Options { events_max: 1 << 31, nodes_max: 1000, rows_max: 20_000 })?;
+        let balance = parity::balance(
+            partition,
+            &goals,
+            &parity::Options {
+                events_max: 1 << 31,
+                nodes_max: 1000,
+                rows_max: 20_000,
+            },
+        )?;
         let note = format!("gap {:.4} %, {} rows", 100.0 * balance.gap(), balance.rows);
         Ok(((goals, balance), note))
     })

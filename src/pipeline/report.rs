@@ -35,9 +35,15 @@ pub fn report(mesh: &Mesh, out: &Path, picture: &Path) -> Result<bool, Error> {
     let views = views(mesh, &verdict.quality);
     let pictures = draw(mesh, &views)?;
     let plates = (views.iter().zip(&pictures))
-        .map(|(view, picture)| Plate { caption: view.caption.clone(), png: picture.png() })
+        .map(|(view, picture)| Plate {
+            caption: view.caption.clone(),
+            png: picture.png(),
+        })
         .collect();
-    let name = mesh.dir().file_name().map_or("mesh".into(), |it| it.to_string_lossy());
+    let name = mesh
+        .dir()
+        .file_name()
+        .map_or("mesh".into(), |it| it.to_string_lossy());
     let page = Page {
         title: name.into_owned(),
         verdict: verdict_line(&verdict),
@@ -87,7 +93,10 @@ fn views(mesh: &Mesh, quality: &Quality) -> Vec<View> {
     };
     let mut views = vec![whole];
     if let Some(worst) = quality.worst.first() {
-        let caption = format!("The worst cell, scaled Jacobian {:.3},", worst.scaled_jacobian);
+        let caption = format!(
+            "The worst cell, scaled Jacobian {:.3},",
+            worst.scaled_jacobian
+        );
         views.push(zoom(caption, worst.centre_m(), true));
     }
     if let Some(least) = quality.smallest.first() {
@@ -143,7 +152,10 @@ fn draw(mesh: &Mesh, views: &[View]) -> Result<Vec<Picture>, Error> {
 fn verdict_line(verdict: &Verdict) -> String {
     let broken: Vec<&str> = verdict.broken().map(|it| it.name).collect();
     match broken.is_empty() {
-        true => format!("Every promise holds ({} checked from the output alone).", verdict.promises.len()),
+        true => format!(
+            "Every promise holds ({} checked from the output alone).",
+            verdict.promises.len()
+        ),
         false => format!("Broken promises: {}.", broken.join(", ")),
     }
 }
@@ -156,26 +168,61 @@ fn histograms(quality: &Quality) -> Vec<page::Histogram> {
             let at = (of.low + (n as f64 + 0.5) * width - from) / (to - from) * bins as f64;
             counts[(at.max(0.0) as usize).min(bins - 1)] += count;
         }
-        page::Histogram { title: title.into(), from, to, counts }
+        page::Histogram {
+            title: title.into(),
+            from,
+            to,
+            counts,
+        }
     };
     vec![
-        shown("Scaled Jacobian of each cell", &quality.scaled_jacobian, 0.0, 1.0, 50),
+        shown(
+            "Scaled Jacobian of each cell",
+            &quality.scaled_jacobian,
+            0.0,
+            1.0,
+            50,
+        ),
         shown("Corner angles, degrees", &quality.angle_deg, 0.0, 180.0, 60),
-        shown("Edge length over size", &quality.edge_over_size, 0.0, 3.0, 60),
-        shown("4 area / perimeter over size", &quality.hydraulic_over_size, 0.0, 2.0, 50),
+        shown(
+            "Edge length over size",
+            &quality.edge_over_size,
+            0.0,
+            3.0,
+            60,
+        ),
+        shown(
+            "4 area / perimeter over size",
+            &quality.hydraulic_over_size,
+            0.0,
+            2.0,
+            50,
+        ),
     ]
 }
 
 fn tables(mesh: &Mesh, verdict: &Verdict) -> Vec<Table> {
-    let mut tables = vec![figures(mesh, verdict), promises(verdict), methods(&verdict.quality)];
+    let mut tables = vec![
+        figures(mesh, verdict),
+        promises(verdict),
+        methods(&verdict.quality),
+    ];
     if let Some(log) = Log::read(mesh.dir()) {
         let rows = (log.stages.into_iter())
             .map(|it| vec![it.stage, format!("{:.2}", it.seconds), it.note])
             .collect();
         tables.push(table("Stages", "", &["stage", "seconds", "made"], rows));
     }
-    tables.push(places("The 20 worst cells", "By scaled Jacobian.", &verdict.quality.worst));
-    tables.push(places("The 20 smallest cells", "They set an explicit time step.", &verdict.quality.smallest));
+    tables.push(places(
+        "The 20 worst cells",
+        "By scaled Jacobian.",
+        &verdict.quality.worst,
+    ));
+    tables.push(places(
+        "The 20 smallest cells",
+        "They set an explicit time step.",
+        &verdict.quality.smallest,
+    ));
     tables.push(changes(mesh));
     tables.push(findings(mesh));
     tables
@@ -204,24 +251,52 @@ fn figures(mesh: &Mesh, verdict: &Verdict) -> Table {
         row("size wished, m", format!("{}", index.size_m)),
         row("tolerance, m", format!("{}", index.tolerance_m)),
         row("quads", format!("{}", index.quads)),
-        row("quads over area / size²", format!("{:.3}", index.quads as f64 / q.quads_wished)),
-        row("scaled Jacobian: mean, 5 %, 1 %, least", format!(
-            "{:.3}, {:.3}, {:.3}, {:.3}",
-            q.scaled_jacobian.mean(),
-            q.scaled_jacobian.quantile(0.05),
-            q.scaled_jacobian.quantile(0.01),
-            q.scaled_jacobian.min
-        )),
-        row("irregular interior nodes", format!("{:.2} %", 100.0 * q.irregular())),
-        row("0.1 % quantile of edge / size", format!("{:.3}", q.edge_over_size.quantile(0.001))),
-        row("0.1 % quantile of 4 area / perimeter / size", format!("{:.3}", q.hydraulic_over_size.quantile(0.001))),
-        row("explicit time step, s (Courant 0.5, 2 m of water, 1 m/s)", format!("{step_s:.3} (of {ideal_s:.3} if all were squares)")),
-        row("lines moved at most, m (99 % below)", format!(
-            "{:.3} ({:.3})",
-            mesh.lines().displacement_max_m,
-            mesh.lines().displacement_p99_m
-        )),
-        row("length dropped, m", format!("{:.1} of {:.0}", mesh.lines().length_dropped_m, mesh.lines().length_m)),
+        row(
+            "quads over area / size²",
+            format!("{:.3}", index.quads as f64 / q.quads_wished),
+        ),
+        row(
+            "scaled Jacobian: mean, 5 %, 1 %, least",
+            format!(
+                "{:.3}, {:.3}, {:.3}, {:.3}",
+                q.scaled_jacobian.mean(),
+                q.scaled_jacobian.quantile(0.05),
+                q.scaled_jacobian.quantile(0.01),
+                q.scaled_jacobian.min
+            ),
+        ),
+        row(
+            "irregular interior nodes",
+            format!("{:.2} %", 100.0 * q.irregular()),
+        ),
+        row(
+            "0.1 % quantile of edge / size",
+            format!("{:.3}", q.edge_over_size.quantile(0.001)),
+        ),
+        row(
+            "0.1 % quantile of 4 area / perimeter / size",
+            format!("{:.3}", q.hydraulic_over_size.quantile(0.001)),
+        ),
+        row(
+            "explicit time step, s (Courant 0.5, 2 m of water, 1 m/s)",
+            format!("{step_s:.3} (of {ideal_s:.3} if all were squares)"),
+        ),
+        row(
+            "lines moved at most, m (99 % below)",
+            format!(
+                "{:.3} ({:.3})",
+                mesh.lines().displacement_max_m,
+                mesh.lines().displacement_p99_m
+            ),
+        ),
+        row(
+            "length dropped, m",
+            format!(
+                "{:.1} of {:.0}",
+                mesh.lines().length_dropped_m,
+                mesh.lines().length_m
+            ),
+        ),
     ];
     table("Figures", "", &["figure", "value"], rows)
 }
@@ -229,12 +304,21 @@ fn figures(mesh: &Mesh, verdict: &Verdict) -> Table {
 fn promises(verdict: &Verdict) -> Table {
     let rows = (verdict.promises.iter())
         .map(|it| {
-            let word = if it.holds() { "holds".to_string() } else { format!("BROKEN x {}", it.broken) };
+            let word = if it.holds() {
+                "holds".to_string()
+            } else {
+                format!("BROKEN x {}", it.broken)
+            };
             let first = it.defects.first().map_or(String::new(), |d| d.text.clone());
             vec![it.name.to_string(), word, it.found.clone(), first]
         })
         .collect();
-    table("Promises", "Verified from the output alone.", &["promise", "", "found", "first defect"], rows)
+    table(
+        "Promises",
+        "Verified from the output alone.",
+        &["promise", "", "found", "first defect"],
+        rows,
+    )
 }
 
 fn methods(quality: &Quality) -> Table {
@@ -252,7 +336,14 @@ fn methods(quality: &Quality) -> Table {
             ]
         })
         .collect();
-    let head = ["method", "sub-domains", "quads", "share", "mean scaled Jacobian", "least"];
+    let head = [
+        "method",
+        "sub-domains",
+        "quads",
+        "share",
+        "mean scaled Jacobian",
+        "least",
+    ];
     table("Methods", "", &head, rows)
 }
 
@@ -270,16 +361,30 @@ fn places(title: &str, note: &str, places: &[Place]) -> Table {
             ]
         })
         .collect();
-    let head = ["x, m", "y, m", "scaled Jacobian", "4 area / perimeter, m", "sub-domain", "method"];
+    let head = [
+        "x, m",
+        "y, m",
+        "scaled Jacobian",
+        "4 area / perimeter, m",
+        "sub-domain",
+        "method",
+    ];
     table(title, note, &head, rows)
 }
 
 fn changes(mesh: &Mesh) -> Table {
     let rows = (mesh.lines().tally())
-        .map(|(what, count, moved_m)| vec![what.to_string(), count.to_string(), format!("{moved_m:.3}")])
+        .map(|(what, count, moved_m)| {
+            vec![what.to_string(), count.to_string(), format!("{moved_m:.3}")]
+        })
         .collect();
     let note = "What clean-up changed; `polder export --format changes` gives the places.";
-    table("Changes", note, &["change", "times", "moved at most, m"], rows)
+    table(
+        "Changes",
+        note,
+        &["change", "times", "moved at most, m"],
+        rows,
+    )
 }
 
 /// Findings are many on real data: the first of each kind are shown, all are counted.
@@ -291,13 +396,25 @@ fn findings(mesh: &Mesh) -> Table {
     let mut rows = Vec::new();
     for kind in all.chunk_by(|a, b| a.what == b.what) {
         for it in kind.iter().take(FINDINGS_SHOWN) {
-            let place = it.at_m.map_or(String::new(), |p| format!("{:.2} {:.2}", p[0], p[1]));
+            let place = it
+                .at_m
+                .map_or(String::new(), |p| format!("{:.2} {:.2}", p[0], p[1]));
             let feature = it.feature.map_or(String::new(), |f| f.to_string());
-            rows.push(vec![it.what.to_string(), it.text.to_string(), feature, place]);
+            rows.push(vec![
+                it.what.to_string(),
+                it.text.to_string(),
+                feature,
+                place,
+            ]);
         }
         if kind.len() > FINDINGS_SHOWN {
             let more = format!("and {} more", kind.len() - FINDINGS_SHOWN);
-            rows.push(vec![kind[0].what.to_string(), more, String::new(), String::new()]);
+            rows.push(vec![
+                kind[0].what.to_string(),
+                more,
+                String::new(),
+                String::new(),
+            ]);
         }
     }
     table("Findings", "", &["finding", "", "feature", "place"], rows)

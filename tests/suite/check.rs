@@ -139,7 +139,7 @@ fn a_slit_that_is_not_opened_on_both_sides_is_found() {
         it.frame.right[8] = OUTSIDE;
     });
     assert!(
-        found.contains(&"quads") || found.contains(&"conforming"),
+        found.contains(&"walks") && found.contains(&"conforming"),
         "{found:?}"
     );
 }
@@ -150,7 +150,7 @@ fn a_hanging_node_is_found() {
     let found = broken(|it| {
         it.patches[0].boundary[3] = 8;
     });
-    assert_eq!(found[0], "conforming");
+    assert!(found.contains(&"conforming"), "{found:?}");
 }
 
 #[test]
@@ -233,8 +233,8 @@ fn a_wrong_tag_is_found() {
 #[test]
 fn a_line_against_its_direction_is_found() {
     let found = broken(|it| {
-        let [a, b] = [13, 14].map(|k| it.frame.pieces[k]);
-        for (k, from_m, to_m) in [(13, b.to_m, a.to_m), (14, a.to_m, a.from_m)] {
+        let [a, b] = [12, 13].map(|k| it.frame.pieces[k]);
+        for (k, from_m, to_m) in [(12, b.to_m, a.to_m), (13, a.to_m, a.from_m)] {
             it.frame.pieces[k].from_m = from_m;
             it.frame.pieces[k].to_m = to_m;
         }

@@ -312,7 +312,7 @@ fn what_is_written_is_what_is_read() {
     assert_eq!(index.patch_quad_base, [0, 4, 8]);
     assert_eq!(frame.nodes, NODES);
     assert_eq!(frame.nodes_of(DYKE), [2, 13, 3]);
-    assert_eq!(frame.edges_of(DYKE), 13..15);
+    assert_eq!(frame.edges_of(DYKE), 12..14);
     assert!(frame.is_rim(0) && !frame.is_rim(DYKE) && !frame.is_seam(DYKE));
     let walk: Vec<[u32; 2]> = frame.walk_edges(1).collect();
     assert_eq!(walk.len(), 10);

@@ -213,11 +213,12 @@ fn star(random: &mut Random, corners: usize, extent: f64, grade: f64) -> Loops {
             }
             3 => draw.line(&[ray(a, from), ray(a + wing, to)], &spacing, true),
             4 => {
+                let half = 0.5 * (from + to);
                 let hole = [
                     ray(a, from),
-                    ray(a + wing, to),
-                    ray(a, 0.8 * to),
-                    ray(a - wing, to),
+                    ray(a + wing, half),
+                    ray(a, to),
+                    ray(a - wing, half),
                 ];
                 draw.ring(&hole, &spacing);
             }

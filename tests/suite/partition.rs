@@ -21,9 +21,14 @@ const OPTIONS: Options = Options {
     tile_cells: 1 << 20,
 };
 
+type At = (i32, i32);
+
+/// A line as written in a test.
+type Written<'a> = (Role, &'a [At]);
+
 /// Lines that meet only at their points, as a domain on a grid of 1 m.
-fn domain(lines: &[(Role, &[(i32, i32)])]) -> Domain {
-    let line = |(source, (role, points)): (usize, &(Role, &[(i32, i32)]))| Line {
+fn domain(lines: &[Written]) -> Domain {
+    let line = |(source, (role, points)): (usize, &Written)| Line {
         source: source as u32,
         role: *role,
         kind: 0,
@@ -62,7 +67,7 @@ fn arrange(domain: &Domain) -> Arrangement {
     Arrangement::from_parts(&points, edges)
 }
 
-fn partition_of(lines: &[(Role, &[(i32, i32)])]) -> (Domain, Arrangement, Partition) {
+fn partition_of(lines: &[Written]) -> (Domain, Arrangement, Partition) {
     let domain = domain(lines);
     let arrangement = arrange(&domain);
     let made = partition::partition(&domain, &arrangement, &OPTIONS).unwrap();
@@ -78,13 +83,13 @@ fn partition_of(lines: &[(Role, &[(i32, i32)])]) -> (Domain, Arrangement, Partit
     (domain, arrangement, made)
 }
 
-const SQUARE: (Role, &[(i32, i32)]) = (
+const SQUARE: Written = (
     Role::Boundary,
     &[(0, 0), (100, 0), (100, 100), (0, 100), (0, 0)],
 );
 
 /// The square and some lines: number of curves, then of walks in each sub-domain, by area.
-fn shape(lines: &[&[(i32, i32)]]) -> (usize, Vec<(usize, f64)>) {
+fn shape(lines: &[&[At]]) -> (usize, Vec<(usize, f64)>) {
     let mut all = vec![SQUARE];
     all.extend(lines.iter().map(|&line| (Role::Constraint, line)));
     let (_, _, made) = partition_of(&all);
@@ -201,13 +206,13 @@ fn loop_touching_another_from_inside_is_cut_off_its_outer_walk() {
 
 #[test]
 fn islands_in_a_row_all_find_the_same_subdomain() {
-    let islands: Vec<[(i32, i32); 4]> = (0..20)
+    let islands: Vec<[At; 4]> = (0..20)
         .map(|k| {
             let (x, y) = (2 + 4 * k, 90 - 4 * k);
             [(x, y), (x + 2, y), (x + 1, y + 2), (x, y)]
         })
         .collect();
-    let lines: Vec<&[(i32, i32)]> = islands.iter().map(|it| it.as_slice()).collect();
+    let lines: Vec<&[At]> = islands.iter().map(|it| it.as_slice()).collect();
     let (curves, faces) = shape(&lines);
     assert_eq!((curves, faces.len()), (4 + 60, 21));
     assert_eq!(faces[20], (21, 10_000.0 - 40.0));
@@ -241,7 +246,7 @@ fn domain_in_two_parts_has_two_subdomains() {
 
 #[test]
 fn closed_chain_without_junction_begins_at_its_least_node() {
-    let ring: Vec<(i32, i32)> = (0..=24)
+    let ring: Vec<At> = (0..=24)
         .map(|k| {
             let angle = f64::from((k + 7) % 24) / 24.0 * std::f64::consts::TAU;
             let radius = 1000.0;
@@ -282,6 +287,21 @@ fn edges_without_pieces_are_seams() {
 }
 
 #[test]
+fn every_node_of_a_seam_is_a_junction() {
+    let domain = domain(&[SQUARE]);
+    let square = arrange(&domain);
+    let mut points = square.points.clone();
+    points.extend([Point::new(30, 30), Point::new(60, 60)]);
+    let mut edges: Vec<([u32; 2], Vec<Piece>)> = (0..4)
+        .map(|e| (square.edges[e as usize], square.pieces_of(e).to_vec()))
+        .collect();
+    edges.extend([[0, 4], [4, 5], [5, 3]].map(|edge| (edge, Vec::new())));
+    let arrangement = Arrangement::from_parts(&points, edges);
+    let made = partition::partition(&domain, &arrangement, &OPTIONS).unwrap();
+    assert_eq!(made.curves.iter().filter(|it| it.is_seam).count(), 3);
+}
+
+#[test]
 fn no_inside_is_an_error_with_a_place() {
     let domain = domain(&[SQUARE]);
     let empty = Arrangement {
@@ -313,7 +333,7 @@ struct Lattice {
     right: Vec<u8>,
     above: Vec<u8>,
     /// Images of the unit vectors.
-    shear: [(i32, i32); 2],
+    shear: [At; 2],
 }
 
 impl Lattice {
@@ -359,33 +379,22 @@ impl Lattice {
         self.cell(x, y).is_some_and(|cell| self.inside[cell])
     }
 
-    /// Lattice edges as `(from, to, line)`, the cell on the left of it and that on the right.
-    #[allow(clippy::type_complexity)]
-    fn edges(&self) -> Vec<((i32, i32), (i32, i32), u8, (i32, i32), (i32, i32))> {
+    /// Lattice edges: line, from, to, the cell on the left and that on the right.
+    fn edges(&self) -> Vec<(u8, [At; 4])> {
         let mut edges = Vec::new();
         for y in -1..self.high as i32 {
             for x in -1..self.wide as i32 {
                 let line = |edges: &[u8]| self.cell(x, y).map_or(1, |cell| edges[cell]);
-                edges.push((
-                    (x + 1, y),
-                    (x + 1, y + 1),
-                    line(&self.right),
-                    (x, y),
-                    (x + 1, y),
-                ));
-                edges.push((
-                    (x, y + 1),
-                    (x + 1, y + 1),
-                    line(&self.above),
-                    (x, y + 1),
-                    (x, y),
-                ));
+                let right = [(x + 1, y), (x + 1, y + 1), (x, y), (x + 1, y)];
+                edges.push((line(&self.right), right));
+                let above = [(x, y + 1), (x + 1, y + 1), (x, y + 1), (x, y)];
+                edges.push((line(&self.above), above));
             }
         }
         edges
     }
 
-    fn at(&self, (x, y): (i32, i32)) -> Point {
+    fn at(&self, (x, y): At) -> Point {
         let [u, v] = self.shear;
         Point::new(x * u.0 + y * v.0, x * u.1 + y * v.1)
     }
@@ -397,11 +406,11 @@ impl Lattice {
             1 => Role::Hole,
             _ => Role::Constraint,
         };
-        let dummy: &[(i32, i32)] = &[(0, 0), (1, 0)];
+        let dummy: &[At] = &[(0, 0), (1, 0)];
         let domain = domain(&[0, 1, 2, 3, 4].map(|line| (role(line), dummy)));
         let mut points = Vec::new();
         let mut edges = Vec::new();
-        for (from, to, line, left, right) in self.edges() {
+        for (line, [from, to, left, right]) in self.edges() {
             let sides = [
                 self.is_inside(left.0, left.1),
                 self.is_inside(right.0, right.1),
@@ -478,7 +487,7 @@ proptest! {
                 sides.insert((b, a), curve.right);
             }
         }
-        for (from, to, _, left, right) in lattice.edges() {
+        for (_, [from, to, left, right]) in lattice.edges() {
             let (a, b) = (lattice.at(from), lattice.at(to));
             let Some(&found) = sides.get(&(a, b)) else { continue };
             for (found, (x, y)) in [(found, left), (sides[&(b, a)], right)] {
@@ -525,7 +534,7 @@ proptest! {
 #[test]
 fn many_nested_rings_take_no_quadratic_time() {
     let n = 20_000;
-    let rings: Vec<[(i32, i32); 5]> = (0..n)
+    let rings: Vec<[At; 5]> = (0..n)
         .map(|k| {
             [
                 (k, k),
@@ -536,7 +545,7 @@ fn many_nested_rings_take_no_quadratic_time() {
             ]
         })
         .collect();
-    let lines: Vec<(Role, &[(i32, i32)])> = rings
+    let lines: Vec<Written> = rings
         .iter()
         .enumerate()
         .map(|(k, ring)| {

@@ -1,9 +1,22 @@
 //! Tests of `pipeline`.
 
+use polder::chunk::reader::Mesh;
+use polder::export::Format;
+use polder::export::export;
+use polder::ingest::CrsChoice;
+use polder::pipeline::build;
+use polder::pipeline::job::CELL_M;
+use polder::pipeline::job::CORNER_DEG;
+use polder::pipeline::job::Job;
 use polder::pipeline::ordered::IN_FLIGHT_PER_WORKER;
 use polder::pipeline::ordered::in_order;
+use polder::synth::City;
+use polder::synth::city;
+use std::fs;
+use std::path::Path;
 use std::sync::atomic::AtomicUsize;
 use std::sync::atomic::Ordering;
+use tempfile::TempDir;
 
 /// Results come in order, each once, and never more than the bound exist.
 #[test]
@@ -50,4 +63,109 @@ fn the_first_error_of_the_writer_ends_the_work() {
 #[test]
 fn no_work_is_done_at_once() {
     assert_eq!(in_order(0, 2, |n| n, |_, _| Err(())), Ok(()));
+}
+
+/// Builds a small city; the bytes of every file that must not depend on how it was built.
+fn bytes_of(
+    folder: &Path,
+    name: &str,
+    threads: usize,
+    tile_m: Option<f64>,
+) -> Vec<(String, Vec<u8>)> {
+    let job = Job {
+        input: folder.join("city.geojson"),
+        output: folder.join(name),
+        size_m: 14.0,
+        sizes_m: Vec::new(),
+        tolerance_m: None,
+        crs: CrsChoice::FromFile,
+        cell_m: CELL_M,
+        tile_m,
+        corner_deg: CORNER_DEG,
+        // Small, so that seams are made.
+        seam_budget_quads: 1500,
+        threads,
+        force: false,
+    };
+    let outcome = build(&job, &|_| {}).unwrap();
+    let broken: Vec<_> = outcome.verdict.broken().collect();
+    assert!(broken.is_empty(), "{broken:#?}");
+    let mesh = Mesh::open(&job.output).unwrap();
+    for (format, file) in [
+        (Format::Ugrid, "x.nc"),
+        (Format::Sms, "x.2dm"),
+        (Format::Lines, "x.lines"),
+        (Format::Changes, "x.changes"),
+    ] {
+        export(&mesh, format, &job.output.join(file)).unwrap();
+    }
+    drop(mesh);
+    let mut files: Vec<(String, Vec<u8>)> = fs::read_dir(&job.output)
+        .unwrap()
+        .map(|it| it.unwrap())
+        .map(|it| {
+            (
+                it.file_name().into_string().unwrap(),
+                fs::read(it.path()).unwrap(),
+            )
+        })
+        .filter(|(name, _)| name != "log.json")
+        .collect();
+    files.sort();
+    files
+}
+
+#[test]
+fn same_bytes_for_any_threads_tiles_and_run() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    write_city(&city(60, 5), &at.join("city.geojson"));
+    let first = bytes_of(at, "a.polder", 1, None);
+    assert!(
+        first.len() >= 8,
+        "{:?}",
+        first.iter().map(|it| &it.0).collect::<Vec<_>>()
+    );
+    for (name, threads, tile_m) in [
+        ("b.polder", 1, None),
+        ("c.polder", 2, None),
+        ("d.polder", 2, Some(90.0)),
+        ("e.polder", 2, Some(333.0)),
+        ("f.polder", 1, Some(1e6)),
+    ] {
+        let again = bytes_of(at, name, threads, tile_m);
+        for (a, b) in first.iter().zip(&again) {
+            assert_eq!(a.0, b.0);
+            assert!(a.1 == b.1, "{name}: {} differs", a.0);
+        }
+        assert_eq!(first.len(), again.len());
+    }
+}
+
+fn write_city(city: &City, to: &Path) {
+    let feature = |role: &str, kind: &str, shape: &str, points: String| {
+        format!(
+            r#"{{"type":"Feature","properties":{{"role":"{role}","kind":"{kind}"}},"geometry":{{"type":"{shape}","coordinates":{points}}}}}"#
+        )
+    };
+    let mut features = vec![feature(
+        "boundary",
+        "",
+        "Polygon",
+        format!("[{:?}]", city.boundary),
+    )];
+    for it in &city.features {
+        features.push(feature(
+            "constraint",
+            it.kind,
+            "LineString",
+            format!("{:?}", it.points),
+        ));
+    }
+    let crs = r#""crs":{"type":"name","properties":{"name":"EPSG:32632"}}"#;
+    let text = format!(
+        r#"{{"type":"FeatureCollection",{crs},"features":[{}]}}"#,
+        features.join(",")
+    );
+    fs::write(to, text).unwrap();
 }

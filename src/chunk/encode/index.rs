@@ -38,12 +38,14 @@ pub(crate) fn index(parts: &IndexParts) -> Encoded {
     let subdomain: Vec<u32> = patches().map(|patch| patch.subdomain).collect();
     let method: Vec<u8> = patches().map(|patch| patch.method).collect();
     let chunk_start = offsets(parts.receipts.iter().map(|receipt| receipt.patches.len()));
-    let box_m = (parts.receipts.iter()).fold(widened(NO_BOX, parts.boundary), |b, receipt| {
-        let corners = [
-            [receipt.box_m[0], receipt.box_m[1]],
-            [receipt.box_m[2], receipt.box_m[3]],
-        ];
-        widened(b, &corners)
+    let box_m = (parts.receipts.iter()).fold(widened(NO_BOX, parts.boundary), |a, receipt| {
+        let b = receipt.box_m;
+        [
+            a[0].min(b[0]),
+            a[1].min(b[1]),
+            a[2].max(b[2]),
+            a[3].max(b[3]),
+        ]
     });
     let chunks = (parts.receipts.iter()).map(|r| (chunk_name(r.number), r.bytes, r.crc32));
     let others = (parts.others.iter()).map(|(name, it)| (name.to_string(), it.bytes, it.crc32));
