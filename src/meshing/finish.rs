@@ -1,5 +1,6 @@
 //! Draft -> Patch: clean-up and smoothing, one node a place again, and the promises checked.
 
+use crate::meshing::cavity;
 use crate::meshing::check::check;
 use crate::meshing::draft::Draft;
 use crate::meshing::improve::Cleaner;
@@ -43,6 +44,9 @@ pub(crate) fn finish(
 ) -> Option<Patch> {
     if effort != Effort::Check {
         improve(&mut draft, visits, loops.size_m, effort);
+        if cavity::refill(&mut draft, visits, loops.size_m) > 0 {
+            improve(&mut draft, visits, loops.size_m, Effort::Smooth);
+        }
     }
     let patch = merge_visits(draft, visits, loops);
     check(loops, &patch).is_ok().then_some(patch)

@@ -38,6 +38,7 @@
 //! sub-domain into parts is done in `seams`.
 
 mod bridges;
+mod cavity;
 pub mod check;
 mod clearance;
 mod closures;
