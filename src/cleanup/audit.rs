@@ -11,7 +11,7 @@ use crate::noding::arrangement::Arrangement;
 use crate::noding::arrangement::Piece;
 
 /// A stretch of a line: line, from, to.
-type Stretch = (LineId, f64, f64);
+pub(super) type Stretch = (LineId, f64, f64);
 
 /// Stretches shorter than this are rounding, metres.
 const ROUNDING_M: f64 = 1e-6;
@@ -19,8 +19,8 @@ const ROUNDING_M: f64 = 1e-6;
 /// What the input has and the result does not, with the reason, and the table of figures.
 pub(super) fn audit(graph: &Graph, input: &Arrangement) -> (Vec<Dropped>, Tally) {
     let wanted = stretches(graph, input.pieces.iter());
-    let live = || graph.edges.iter().filter(|edge| edge.alive);
-    let there = stretches(graph, live().flat_map(|edge| &edge.pieces));
+    let live = graph.edges.iter().filter(|edge| edge.alive);
+    let there = stretches(graph, live.flat_map(|edge| &edge.pieces));
     let carriers = carriers(graph);
     let mut dropped: Vec<Dropped> = Vec::new();
     let missing = subtract(&wanted, &there);
@@ -51,7 +51,10 @@ pub(super) fn audit(graph: &Graph, input: &Arrangement) -> (Vec<Dropped>, Tally)
 }
 
 /// The union of the pieces, sorted; of constraint lines only.
-fn stretches<'p>(graph: &Graph, pieces: impl Iterator<Item = &'p Piece>) -> Vec<Stretch> {
+pub(super) fn stretches<'p>(
+    graph: &Graph,
+    pieces: impl Iterator<Item = &'p Piece>,
+) -> Vec<Stretch> {
     let mut all: Vec<Stretch> = pieces
         .filter(|piece| !graph.measure.is_rim(piece.line))
         .map(|it| (it.line, it.from_m.min(it.to_m), it.from_m.max(it.to_m)))
@@ -72,7 +75,7 @@ fn stretches<'p>(graph: &Graph, pieces: impl Iterator<Item = &'p Piece>) -> Vec<
 }
 
 /// What is in `wanted` and not in `there`; both sorted unions.
-fn subtract(wanted: &[Stretch], there: &[Stretch]) -> Vec<Stretch> {
+pub(super) fn subtract(wanted: &[Stretch], there: &[Stretch]) -> Vec<Stretch> {
     let mut missing = Vec::new();
     let mut k = 0;
     for &(line, from, to) in wanted {
@@ -95,7 +98,7 @@ fn subtract(wanted: &[Stretch], there: &[Stretch]) -> Vec<Stretch> {
 }
 
 /// All (line, edge) pairs, sorted.
-fn carriers(graph: &Graph) -> Vec<(LineId, u32)> {
+pub(super) fn carriers(graph: &Graph) -> Vec<(LineId, u32)> {
     let mut carriers = Vec::new();
     for edge in graph.live() {
         let pieces = &graph.edges[edge as usize].pieces;
@@ -107,7 +110,7 @@ fn carriers(graph: &Graph) -> Vec<(LineId, u32)> {
 }
 
 /// The parts of a stretch that are beyond tolerance of all edges that carry the line.
-fn uncovered(
+pub(super) fn uncovered(
     graph: &Graph,
     carriers: &[(LineId, u32)],
     &(line, from, to): &Stretch,
