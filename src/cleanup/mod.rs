@@ -148,7 +148,11 @@ pub fn clean(
     let (mut dropped, tally) = audit::audit(&graph, &arrangement);
     let findings = leftovers::leftovers(&graph);
     let (arrangement, torn) = match is_on {
-        true => thread::thread(domain, graph.arrangement(), &graph.measure.tolerance_m),
+        true => {
+            dropped.sort_by_key(|it| it.line);
+            let limits_m = &graph.measure.tolerance_m;
+            thread::thread(domain, graph.arrangement(), &dropped, limits_m)
+        }
         false => (arrangement, Vec::new()),
     };
     dropped.extend(torn);

@@ -23,8 +23,8 @@ const SAME_M: f64 = 1e-6;
 /// Longest way over a tear, edges: within the tolerance there are few.
 const WAY_EDGES_MAX: usize = 6;
 
-/// The stretch that a led-over edge gets of the one behind it, metres, at most: it must have some
-/// length to have a direction.
+/// The stretch that a way gets of the one behind it, metres, at most: it must have some length to
+/// have a direction.
 const LED_M: f64 = 5e-4;
 
 /// One stretch of a line on an edge, in the digitised direction.
@@ -37,11 +37,12 @@ struct Step {
     end: u32,
 }
 
-/// Threads all constraint lines of `arrangement`; `tolerance_m` is a line's own. Returns the
-/// arrangement and the tears that are left.
+/// Threads all constraint lines of `arrangement`, but for the stretches that are `dropped`;
+/// `tolerance_m` is a line's own. Returns the arrangement and the tears that are left.
 pub(super) fn thread(
     domain: &Domain,
     arrangement: Arrangement,
+    dropped: &[Dropped],
     tolerance_m: &[f64],
 ) -> (Arrangement, Vec<Dropped>) {
     let mut by_line: Vec<(LineId, Step)> = Vec::with_capacity(arrangement.pieces.len());
@@ -67,17 +68,23 @@ pub(super) fn thread(
         let line = run[0].0;
         let steps: Vec<Step> = run.iter().map(|it| it.1).collect();
         let limit_m = tolerance_m[line as usize];
-        let (steps, tears) = thread_one(domain, &arrangement, &stars, line, steps, limit_m);
+        // Sorted by line.
+        let first = dropped.partition_point(|it| it.line < line);
+        let gone: Vec<(f64, f64)> = (dropped[first..].iter())
+            .take_while(|it| it.line == line)
+            .map(|it| (it.from_m, it.to_m))
+            .collect();
+        let (steps, tears) = thread_one(domain, &arrangement, &stars, line, steps, &gone, limit_m);
         threaded.extend(
             steps
                 .iter()
                 .map(|it| (it.edge, piece(&arrangement, line, it))),
         );
-        torn.extend(tears.iter().map(|&at_m| Dropped {
+        torn.extend(tears.iter().map(|&(from_m, to_m)| Dropped {
             line,
             reason: Reason::BeyondTolerance,
-            from_m: at_m,
-            to_m: at_m,
+            from_m,
+            to_m,
         }));
     }
     (with_pieces(arrangement, threaded), torn)
@@ -89,8 +96,9 @@ fn thread_one(
     stars: &Stars,
     line: LineId,
     steps: Vec<Step>,
+    dropped: &[(f64, f64)],
     limit_m: f64,
-) -> (Vec<Step>, Vec<f64>) {
+) -> (Vec<Step>, Vec<(f64, f64)>) {
     let mut made: Vec<Step> = Vec::with_capacity(steps.len());
     let mut tears = Vec::new();
     for mut next in steps {
@@ -98,21 +106,24 @@ fn thread_one(
             made.push(next);
             continue;
         };
-        let joins = last.end == next.start || next.low_m > last.high_m + SAME_M;
-        if joins {
+        let gap_m = (last.high_m, next.low_m.max(last.high_m));
+        let is_known =
+            || (dropped.iter()).any(|it| it.0 <= gap_m.0 + SAME_M && it.1 >= gap_m.1 - SAME_M);
+        if last.end == next.start {
             made.push(next);
         } else if last.edge == next.edge && last.start == next.start {
             last.high_m = last.high_m.max(next.high_m);
+        } else if gap_m.1 > gap_m.0 + SAME_M && is_known() {
+            made.push(next);
         } else {
-            let (from, at_m) = (last.end, last.high_m);
-            let place = place(domain, line, at_m);
+            let places = [gap_m.0, gap_m.1].map(|at_m| place(domain, line, at_m));
             let near = |node: u32| {
                 let p = domain.grid.local_m(arrangement.points[node as usize]);
-                distance(p, place) <= limit_m
+                places.iter().any(|&place| distance(p, place) <= limit_m)
             };
-            match stars.way(from, next.start, near) {
+            match stars.way(last.end, next.start, near) {
                 Some(way) => lead(&mut made, &mut next, arrangement, &way),
-                None => tears.push(at_m),
+                None => tears.push(gap_m),
             }
             made.push(next);
         }
@@ -124,7 +135,9 @@ fn thread_one(
 fn lead(made: &mut Vec<Step>, next: &mut Step, arrangement: &Arrangement, way: &[u32]) {
     let last = made[made.len() - 1];
     let mut at_m = last.high_m.min(next.low_m.max(last.low_m));
-    let share_m = LED_M.min((next.high_m - at_m) / (2.0 * way.len() as f64));
+    // A stretch that no edge carries goes to the way; if there is none, a little of the next one.
+    let free_m = (next.low_m - at_m).max(LED_M.min(0.5 * (next.high_m - at_m)));
+    let share_m = free_m / way.len() as f64;
     let mut node = last.end;
     for &edge in way {
         let [a, b] = arrangement.edges[edge as usize];
