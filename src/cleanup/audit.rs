@@ -43,8 +43,7 @@ pub(super) fn audit(graph: &Graph, input: &Arrangement) -> (Vec<Dropped>, Tally)
         });
     }
     let mut tally = displacements(graph);
-    let total = |it: &[Stretch]| it.iter().map(|(_, from, to)| to - from).sum::<f64>();
-    tally.length_m = total(&wanted);
+    tally.length_m = wanted.iter().map(|(_, from, to)| to - from).sum();
     tally.length_dropped_m = dropped.iter().map(|it| it.to_m - it.from_m).sum();
     tally.rows = rows(graph);
     (dropped, tally)
