@@ -117,19 +117,35 @@ pub(super) fn uncovered(
     let own = &carriers[carriers.partition_point(|it| it.0 < line)..];
     let own = &own[..own.partition_point(|it| it.0 == line)];
     let limit = graph.measure.tolerance_m[line as usize];
-    let is_near = |station: f64| {
+    let away = |station: f64| {
         let p = graph.measure.point(line, station);
-        own.iter().any(|&(_, edge)| {
-            let (a, b) = graph.ends_m(edge);
-            to_segment(p, a, b).0 <= limit
-        })
+        (own.iter())
+            .map(|&(_, edge)| {
+                let (a, b) = graph.ends_m(edge);
+                to_segment(p, a, b).0
+            })
+            .fold(f64::INFINITY, f64::min)
     };
-    let steps = ((to - from) / (0.1 * graph.measure.size_m[line as usize])).ceil();
-    let at = |k: f64| from + (to - from) * k / steps;
+    let finest_m = 1e-4 * graph.measure.size_m[line as usize];
     let mut parts: Vec<Stretch> = Vec::new();
-    for k in 0..steps as usize {
-        let (low, high) = (at(k as f64), at(k as f64 + 1.0));
-        if is_near(low) && is_near(high) {
+    let mut open = vec![(from, to)];
+    while let Some((low, high)) = open.pop() {
+        // Distance to a set changes no faster than the way along the line.
+        let (at_low, at_high) = (away(low), away(high));
+        if 0.5 * (at_low + at_high + high - low) <= limit {
+            continue;
+        }
+        let is_beyond = at_low > limit && at_high > limit;
+        if high - low
+            > if is_beyond {
+                100.0 * finest_m
+            } else {
+                finest_m
+            }
+        {
+            let middle = 0.5 * (low + high);
+            open.push((middle, high));
+            open.push((low, middle));
             continue;
         }
         match parts.last_mut() {
