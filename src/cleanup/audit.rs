@@ -26,7 +26,7 @@ pub(super) fn audit(graph: &Graph, input: &Arrangement) -> (Vec<Dropped>, Tally)
     let missing = subtract(&wanted, &there);
     for (line, from_m, to_m) in missing
         .iter()
-        .flat_map(|it| uncovered(graph, &carriers, it))
+        .flat_map(|it| uncovered(graph, &carriers, it, 0.0))
     {
         let known = graph.dropped.iter().filter(|it| it.line == line);
         let middle = 0.5 * (from_m + to_m);
@@ -113,10 +113,11 @@ pub(super) fn uncovered(
     graph: &Graph,
     carriers: &[(LineId, u32)],
     &(line, from, to): &Stretch,
+    slack_m: f64,
 ) -> Vec<Stretch> {
     let own = &carriers[carriers.partition_point(|it| it.0 < line)..];
     let own = &own[..own.partition_point(|it| it.0 == line)];
-    let limit = graph.measure.tolerance_m[line as usize];
+    let limit = graph.measure.tolerance_m[line as usize] + slack_m;
     let away = |station: f64| {
         let p = graph.measure.point(line, station);
         (own.iter())

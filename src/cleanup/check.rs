@@ -75,7 +75,7 @@ pub fn check(
     let side = sizes.default_m / domain.grid.cell_m;
     let graph = Graph::new(&cleaned.arrangement, measure, side.max(4.0));
     check_distances(&graph)?;
-    check_coverage(&graph, input, cleaned)?;
+    check_coverage(domain, &graph, input, cleaned)?;
     check_lengths(&graph, cleaned)
 }
 
@@ -108,7 +108,12 @@ fn check_distances(graph: &Graph) -> Result<(), Defect> {
     Ok(())
 }
 
-fn check_coverage(graph: &Graph, input: &Arrangement, cleaned: &Cleaned) -> Result<(), Defect> {
+fn check_coverage(
+    domain: &Domain,
+    graph: &Graph,
+    input: &Arrangement,
+    cleaned: &Cleaned,
+) -> Result<(), Defect> {
     let wanted = stretches(graph, input.pieces.iter());
     let there = stretches(graph, cleaned.arrangement.pieces.iter());
     let dropped = cleaned.dropped.iter();
@@ -118,7 +123,8 @@ fn check_coverage(graph: &Graph, input: &Arrangement, cleaned: &Cleaned) -> Resu
     let carriers = carriers(graph);
     let lost = missing
         .iter()
-        .flat_map(|it| uncovered(graph, &carriers, it))
+        // Positions are rounded to the grid once more after the audit.
+        .flat_map(|it| uncovered(graph, &carriers, it, 2.0 * domain.grid.cell_m))
         .next();
     match lost {
         Some((line, from_m, to_m)) => Err(Defect::Lost(line, from_m, to_m)),

@@ -52,6 +52,10 @@ impl Graph<'_> {
     pub(super) fn merge(&mut self, v: u32, w: u32, share: f64) -> bool {
         let (q, p) = (self.point(v), self.point(w));
         let contracted = self.find(v, w);
+        let along_rim = contracted.is_some_and(|edge| self.edges[edge as usize].is_rim());
+        if !along_rim && self.is_on_rim(v) && self.is_on_rim(w) {
+            return false;
+        }
         let mut drafts = self.drafts(v);
         drafts.retain(|draft| draft.to != w);
         let absorbed = contracted.map_or_else(Absorbed::default, |edge| {
@@ -86,6 +90,14 @@ impl Graph<'_> {
         true
     }
 
+    /// True if an edge of the outline ends at `node`. Two such nodes only become one along the
+    /// outline: elsewhere the domain would touch itself in a point, a door that is no door.
+    fn is_on_rim(&self, node: u32) -> bool {
+        let star = self.star[node as usize].iter();
+        star.into_iter()
+            .any(|&edge| self.edges[edge as usize].is_rim())
+    }
+
     /// Replaces an edge by two that meet in `bend`; returns the node there.
     pub(super) fn bend(&mut self, edge: u32, bend: Bend, share: f64) -> Option<u32> {
         let edge = self.current(edge)?;
@@ -96,6 +108,13 @@ impl Graph<'_> {
             Bend::At(p) => (p, Some(p)),
         };
         if p == a_at || p == b_at {
+            return None;
+        }
+        if let Bend::To(node) = bend
+            && self.edges[edge as usize].is_rim()
+            && self.is_on_rim(node)
+            && self.find(node, a).or(self.find(node, b)).is_none()
+        {
             return None;
         }
         let (to_a, to_b) = self.split(edge, self.measure.metres(p));

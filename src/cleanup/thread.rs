@@ -116,13 +116,19 @@ fn thread_one(
         } else if gap_m.1 > gap_m.0 + SAME_M && is_known() {
             made.push(next);
         } else {
-            let places = [gap_m.0, gap_m.1].map(|at_m| place(domain, line, at_m));
-            let near = |node: u32| {
-                let p = domain.grid.local_m(arrangement.points[node as usize]);
-                places.iter().any(|&place| distance(p, place) <= limit_m)
-            };
-            match stars.way(last.end, next.start, near) {
-                Some(way) => lead(&mut made, &mut next, arrangement, &way),
+            // All of the way represents one place: the end of the stretch before or the begin of
+            // the next one.
+            let led = [gap_m.0, gap_m.1].into_iter().find_map(|at_m| {
+                let place = place(domain, line, at_m);
+                let near = |node: u32| {
+                    let p = domain.grid.local_m(arrangement.points[node as usize]);
+                    distance(p, place) <= limit_m
+                };
+                let way = stars.way(last.end, next.start, near)?;
+                near(last.end).then_some((way, at_m))
+            });
+            match led {
+                Some((way, at_m)) => lead(&mut made, &mut next, arrangement, &way, at_m),
                 None => tears.push(gap_m),
             }
             made.push(next);
@@ -131,13 +137,13 @@ fn thread_one(
     (made, tears)
 }
 
-/// Adds the edges of `way` before `next`, each with a little of its stretch.
-fn lead(made: &mut Vec<Step>, next: &mut Step, arrangement: &Arrangement, way: &[u32]) {
+/// Adds the edges of `way` before `next`, each with a little of the stretch around `at_m`.
+fn lead(made: &mut Vec<Step>, next: &mut Step, arrangement: &Arrangement, way: &[u32], at_m: f64) {
     let last = made[made.len() - 1];
-    let mut at_m = last.high_m.min(next.low_m.max(last.low_m));
-    // A stretch that no edge carries goes to the way; if there is none, a little of the next one.
-    let free_m = (next.low_m - at_m).max(LED_M.min(0.5 * (next.high_m - at_m)));
+    let free_m = LED_M.min(0.5 * (next.high_m - at_m));
     let share_m = free_m / way.len() as f64;
+    // In front of the next stretch if there is room, else at its expense.
+    let mut at_m = (next.low_m - free_m).clamp(last.high_m, at_m.max(last.high_m));
     let mut node = last.end;
     for &edge in way {
         let [a, b] = arrangement.edges[edge as usize];
@@ -151,7 +157,7 @@ fn lead(made: &mut Vec<Step>, next: &mut Step, arrangement: &Arrangement, way: &
         });
         (node, at_m) = (end, at_m + share_m);
     }
-    next.low_m = at_m;
+    next.low_m = next.low_m.max(at_m);
 }
 
 fn step(arrangement: &Arrangement, edge: u32, piece: &Piece) -> Step {
