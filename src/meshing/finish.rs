@@ -21,8 +21,6 @@ use crate::meshing::visits::Visits;
 pub(crate) enum Effort {
     /// As it is: only the promises are checked.
     Check,
-    /// Smoothing only.
-    Smooth,
     /// Clean-up and smoothing.
     Clean,
 }
@@ -42,10 +40,10 @@ pub(crate) fn finish(
     loops: &Loops,
     effort: Effort,
 ) -> Option<Patch> {
-    if effort != Effort::Check {
-        improve(&mut draft, visits, loops.size_m, effort);
+    if effort == Effort::Clean {
+        improve(&mut draft, visits, loops.size_m);
         if cavity::refill(&mut draft, visits, loops.size_m) > 0 {
-            improve(&mut draft, visits, loops.size_m, Effort::Smooth);
+            smooth_only(&mut draft, visits, loops.size_m);
         }
     }
     let patch = merge_visits(draft, visits, loops);
@@ -53,28 +51,37 @@ pub(crate) fn finish(
 }
 
 /// Works on all quads that are not settled.
-pub(crate) fn improve(draft: &mut Draft, visits: &Visits, size_m: f64, effort: Effort) {
+pub(crate) fn improve(draft: &mut Draft, visits: &Visits, size_m: f64) {
     let mut kernel = Kernel::of(draft, visits);
     wish(&mut kernel, size_m);
     let mut cleaner = Cleaner::new(kernel);
-    if effort == Effort::Clean {
-        smooth(&mut cleaner, 10, ROUGHLY);
-        cleaner.run(Pass::Valence, 6);
-        cleaner.run(Pass::Rescue(0.35), 3);
-        smooth(&mut cleaner, 10, ROUGHLY);
+    smooth(&mut cleaner, 10, ROUGHLY);
+    cleaner.run(Pass::Valence, 6);
+    cleaner.run(Pass::Rescue(0.35), 3);
+    smooth(&mut cleaner, 10, ROUGHLY);
+    cleaner.forget();
+    cleaner.run(Pass::Valence, 3);
+    cleaner.run(Pass::Rescue(0.4), 3);
+    for _ in 0..2 {
+        smooth(&mut cleaner, 6, ROUGHLY);
         cleaner.forget();
-        cleaner.run(Pass::Valence, 3);
-        cleaner.run(Pass::Rescue(0.4), 3);
-        for _ in 0..2 {
-            smooth(&mut cleaner, 6, ROUGHLY);
-            cleaner.forget();
-            let kept = cleaner.run(Pass::Energy, 1) + cleaner.run(Pass::Valence, 2);
-            if kept == 0 {
-                break;
-            }
+        let kept = cleaner.run(Pass::Energy, 1) + cleaner.run(Pass::Valence, 2);
+        if kept == 0 {
+            break;
         }
-        cleaner.run(Pass::Rescue(0.4), 3);
     }
+    cleaner.run(Pass::Rescue(0.4), 3);
+    settle(cleaner, draft);
+}
+
+/// The last step of [`improve`] alone: the topology stays.
+fn smooth_only(draft: &mut Draft, visits: &Visits, size_m: f64) {
+    let mut kernel = Kernel::of(draft, visits);
+    wish(&mut kernel, size_m);
+    settle(Cleaner::new(kernel), draft);
+}
+
+fn settle(mut cleaner: Cleaner, draft: &mut Draft) {
     smooth(&mut cleaner, 30, FINELY);
     lift_worst(&mut cleaner.kernel, POOR, 5);
     cleaner.kernel.store(draft);

@@ -435,3 +435,48 @@ impl Expansion {
 fn minus(a: Xy, b: Xy) -> Xy {
     [a[0] - b[0], a[1] - b[1]]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A star of three quads around a node near the origin, one of them inverted.
+    fn star() -> Star {
+        let quad = |next: Xy, far: Xy, last: Xy| StarQuad {
+            next,
+            far,
+            last,
+            next_scale: 1.1,
+            last_scale: 0.8,
+        };
+        let mut quads = Few::new();
+        quads.push(quad([1.0, 0.1], [0.9, 1.2], [-0.1, 1.0]));
+        quads.push(quad([-0.1, 1.0], [-1.0, 0.9], [-0.8, -0.7]));
+        quads.push(quad([-0.8, -0.7], [0.2, -0.1], [1.0, 0.1]));
+        Star { quads, scale: 0.9 }
+    }
+
+    #[test]
+    fn derivatives_agree_with_differences() {
+        let star = star();
+        let (at, step) = ([0.05, -0.02], 1e-4);
+        for phase in [OPEN, PERFECT] {
+            let f = |x: f64, y: f64| star.energy([at[0] + x * step, at[1] + y * step], phase).0;
+            let expansion = star.expand(at, phase);
+            let slope = [f(1.0, 0.0) - f(-1.0, 0.0), f(0.0, 1.0) - f(0.0, -1.0)];
+            let middle = 2.0 * f(0.0, 0.0);
+            let bend = [
+                f(1.0, 0.0) + f(-1.0, 0.0) - middle,
+                0.25 * (f(1.0, 1.0) + f(-1.0, -1.0) - f(1.0, -1.0) - f(-1.0, 1.0)),
+                f(0.0, 1.0) + f(0.0, -1.0) - middle,
+            ];
+            let close = |a: f64, b: f64| (a - b).abs() < 1e-3 * (1.0 + a.abs());
+            for k in 0..2 {
+                assert!(close(expansion.gradient[k], slope[k] / (2.0 * step)));
+            }
+            for k in 0..3 {
+                assert!(close(expansion.hessian[k], bend[k] / (step * step)));
+            }
+        }
+    }
+}
