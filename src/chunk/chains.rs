@@ -1,5 +1,6 @@
 //! The mesh edges of each line, in the order and direction in which it was digitised.
 
+use crate::chunk::reader::Mesh;
 use crate::chunk::views::FrameView;
 
 /// One mesh edge that represents a stretch of a line, in the line's direction.
@@ -29,13 +30,14 @@ pub struct LineEdges<'a> {
     piece: Vec<u32>,
     /// Line by line: row of the edge's first node in `curve_nodes`.
     entry: Vec<u32>,
-    /// The curve of each edge follows from this by search.
-    curve_start: &'a [u32],
+    /// A stretch no longer than this may lie on its edge either way, metres.
+    tolerance_m: f64,
 }
 
 impl<'a> LineEdges<'a> {
-    /// Sorts the pieces of `frame` by their line, of which there are `lines`. O(pieces).
-    pub fn of(frame: FrameView<'a>, lines: usize) -> LineEdges<'a> {
+    /// Sorts the pieces of the frame by their line. O(pieces).
+    pub fn of(mesh: &'a Mesh) -> LineEdges<'a> {
+        let (frame, lines) = (mesh.frame(), mesh.lines().lines());
         let mut start = vec![0_u32; lines + 1];
         for &line in frame.piece_line {
             start[line as usize + 1] += 1;
@@ -61,13 +63,14 @@ impl<'a> LineEdges<'a> {
             start,
             piece,
             entry,
-            curve_start: frame.curve_start,
+            tolerance_m: mesh.index().tolerance_m,
         }
     }
 
     fn step(&self, slot: usize) -> Step {
         let (row, entry) = (self.piece[slot] as usize, self.entry[slot] as usize);
-        let curve = self.curve_start.partition_point(|&s| s as usize <= entry) - 1;
+        let starts = self.frame.curve_start;
+        let curve = starts.partition_point(|&s| s as usize <= entry) - 1;
         let [a, b] = [0, 1].map(|k| self.frame.curve_nodes[entry + k]);
         let [p, q] = [self.frame.piece_from_m[row], self.frame.piece_to_m[row]];
         let forward = p <= q;
@@ -94,14 +97,45 @@ impl<'a> LineEdges<'a> {
         });
         order_points(&mut steps);
         let mut chains: Vec<Vec<Step>> = Vec::new();
-        for step in steps {
+        for leg in steps.chunk_by(|a, b| a.to == b.from) {
             match chains.last_mut() {
-                Some(chain) if chain[chain.len() - 1].to == step.from => chain.push(step),
-                _ => chains.push(vec![step]),
+                Some(chain) if self.is_folded(chain, leg) => fold(chain, leg),
+                _ => chains.push(leg.to_vec()),
             }
         }
         chains
     }
+
+    /// True if `leg` ends where `chain` does and is so short that its direction means nothing: a
+    /// loop or a hook within the tolerance was folded onto mesh edges, which may well have put both
+    /// of its legs onto the same edges in one direction.
+    fn is_folded(&self, chain: &[Step], leg: &[Step]) -> bool {
+        let last = leg.len() - 1;
+        chain[chain.len() - 1].to == leg[last].to
+            && leg[last].to_m - leg[0].from_m <= self.tolerance_m
+    }
+}
+
+/// Adds a folded leg to a chain: what repeats its end is that end, another one leads away from it.
+fn fold(chain: &mut Vec<Step>, leg: &[Step]) {
+    let (begin_m, end_m) = (leg[0].from_m, leg[leg.len() - 1].to_m);
+    let repeats = (chain.iter().rev())
+        .zip(leg.iter().rev())
+        .take_while(|(a, b)| (a.from, a.to) == (b.from, b.to))
+        .count();
+    if repeats == leg.len() {
+        let last = chain.len() - 1;
+        chain[last].to_m = end_m;
+        return;
+    }
+    chain.extend(leg.iter().rev().map(|step| Step {
+        from: step.to,
+        to: step.from,
+        from_m: begin_m + (end_m - step.to_m),
+        to_m: begin_m + (end_m - step.from_m),
+        forward: !step.forward,
+        ..*step
+    }));
 }
 
 /// Steps of no length (several mesh edges for one point of the line, as where an end was joined to

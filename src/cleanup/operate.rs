@@ -78,7 +78,7 @@ impl Graph<'_> {
             self.add_or_fuse(w, draft, fused);
         }
         for piece in absorbed.lost {
-            if !self.lodge(&piece, w, share) {
+            if !self.lodge(&piece, w) {
                 let reason = self.reason_for(piece.line);
                 self.drop_piece(&piece, reason);
             }
@@ -132,6 +132,13 @@ impl Graph<'_> {
                 orient(p, to, other) > 0
             })?,
         };
+        if !gains(
+            &fused,
+            [p.distance2(a_at), p.distance2(b_at)],
+            a_at.distance2(b_at),
+        ) {
+            return None;
+        }
         self.remove(edge);
         let node = match bend {
             Bend::To(node) => node,
@@ -256,5 +263,15 @@ impl Graph<'_> {
         } else {
             Reason::ShortEnd
         }
+    }
+}
+
+/// An edge that falls onto one side of its triangle only flips over to the other side. It might
+/// flip back, unless it must become shorter each time.
+fn gains(fused: &[Option<Fused>], sides2: [i64; 2], before2: i64) -> bool {
+    match fused {
+        [Some(_), None] => sides2[1] < before2,
+        [None, Some(_)] => sides2[0] < before2,
+        _ => true,
     }
 }

@@ -1,4 +1,7 @@
-//! UGRID-1.0 in classic NetCDF: nodes, faces, the sub-domain and method of each face.
+//! UGRID-1.0 in classic NetCDF: nodes, edges with the line that runs along them, faces with their
+//! sub-domain and method.
+//!
+//! Edges are those of the curves first, in the order of the frame, then those inside patches.
 
 use crate::chunk::reader::Mesh;
 use crate::chunk::views::IndexView;
@@ -9,6 +12,7 @@ use crate::export::classic::Value;
 use crate::export::classic::Variable;
 use crate::export::classic::text;
 use crate::export::destination::Destination;
+use crate::export::edges::Edges;
 use crate::export::error::Error;
 use crate::geometry::point::Xy;
 use std::io::Write;
@@ -16,6 +20,8 @@ use std::io::Write;
 const NODES: usize = 0;
 const FACES: usize = 1;
 const CORNERS: usize = 2;
+const EDGES: usize = 3;
+const ENDS: usize = 4;
 
 pub(crate) fn write(mesh: &Mesh, to: &Destination) -> Result<Stats, Error> {
     let index = mesh.index();
@@ -26,13 +32,26 @@ pub(crate) fn write(mesh: &Mesh, to: &Destination) -> Result<Stats, Error> {
             found: index.nodes,
         });
     }
-    let (header, places) = header(&index).encode();
+    let mut edges = Edges::of(mesh);
+    let (header, places) = header(&index, edges.total).encode();
     // All variables are written side by side, so that each chunk is mapped once.
     let mut sections = Vec::new();
     for &place in [0].iter().chain(&places) {
         sections.push(to.section(place)?);
     }
-    let [head, topology, projection, x, y, faces, subdomains, methods] = &mut sections[..] else {
+    let [
+        head,
+        topology,
+        projection,
+        x,
+        y,
+        faces,
+        subdomains,
+        methods,
+        ends,
+        sources,
+    ] = &mut sections[..]
+    else {
         unreachable!("one section for the header and one a variable");
     };
     let io = |e| to.refused(e);
@@ -48,6 +67,9 @@ pub(crate) fn write(mesh: &Mesh, to: &Destination) -> Result<Stats, Error> {
         .map_err(io)?;
     y.write_all(places.axis(mesh.frame().nodes, 1))
         .map_err(io)?;
+    let (curve_ends, curve_sources) = edges.of_curves();
+    ends.write_all(&curve_ends).map_err(io)?;
+    sources.write_all(&curve_sources).map_err(io)?;
     let mut bytes = Vec::new();
     for number in 0..mesh.chunks() {
         let chunk = mesh.chunk(number)?;
@@ -69,8 +91,14 @@ pub(crate) fn write(mesh: &Mesh, to: &Destination) -> Result<Stats, Error> {
             bytes.clear();
             bytes.resize(patch.quads.len(), patch.method);
             methods.write_all(&bytes).map_err(io)?;
+            let inner = edges.inside(&patch, base);
+            ends.write_all(inner).map_err(io)?;
+            bytes.clear();
+            bytes.resize(inner.len() / 2, 0xff); // -1: no line
+            sources.write_all(&bytes).map_err(io)?;
         }
     }
+    edges.expect_all(mesh)?;
     let padding = (index.quads.next_multiple_of(4) - index.quads) as usize;
     methods.write_all(&[0; 3][..padding]).map_err(io)?;
     for section in &mut sections {
@@ -100,7 +128,7 @@ impl Places {
     }
 }
 
-fn header(index: &IndexView) -> Header {
+fn header(index: &IndexView, edges: u64) -> Header {
     let mut topology = Variable {
         name: "mesh2d",
         kind: Type::Int,
@@ -115,6 +143,8 @@ fn header(index: &IndexView) -> Header {
         .push(("topology_dimension", Value::Int(2)));
     for (name, value) in [
         ("node_coordinates", "mesh2d_node_x mesh2d_node_y"),
+        ("edge_node_connectivity", "mesh2d_edge_nodes"),
+        ("edge_dimension", "mesh2d_nEdges"),
         ("face_node_connectivity", "mesh2d_face_nodes"),
         ("face_dimension", "mesh2d_nFaces"),
         ("max_face_nodes_dimension", "mesh2d_nMax_face_nodes"),
@@ -126,6 +156,8 @@ fn header(index: &IndexView) -> Header {
             ("mesh2d_nNodes", index.nodes),
             ("mesh2d_nFaces", index.quads),
             ("mesh2d_nMax_face_nodes", 4),
+            ("mesh2d_nEdges", edges),
+            ("Two", 2),
         ],
         attributes: vec![
             text("Conventions", "CF-1.8 UGRID-1.0"),
@@ -145,8 +177,13 @@ fn header(index: &IndexView) -> Header {
                 "projection_y_coordinate",
                 "y of mesh nodes",
             ),
-            face_nodes(),
-            on_faces(
+            connectivity(
+                "mesh2d_face_nodes",
+                "face_node_connectivity",
+                vec![FACES, CORNERS],
+            ),
+            on(
+                "face",
                 "mesh2d_subdomain",
                 Type::Int,
                 vec![text(
@@ -154,7 +191,8 @@ fn header(index: &IndexView) -> Header {
                     "sub-domain: the face of the line work that holds the cell",
                 )],
             ),
-            on_faces(
+            on(
+                "face",
                 "mesh2d_method",
                 Type::Byte,
                 vec![
@@ -165,6 +203,20 @@ fn header(index: &IndexView) -> Header {
                         "mapping looping strip indirect last_resort",
                     ),
                 ],
+            ),
+            connectivity(
+                "mesh2d_edge_nodes",
+                "edge_node_connectivity",
+                vec![EDGES, ENDS],
+            ),
+            on(
+                "edge",
+                "mesh2d_edge_source",
+                Type::Int,
+                vec![text(
+                    "long_name",
+                    "input feature of the line along the edge; -1: none",
+                )],
             ),
         ],
     }
@@ -208,30 +260,32 @@ fn axis(name: &'static str, standard: &str, long: &str) -> Variable {
     }
 }
 
-fn face_nodes() -> Variable {
+fn connectivity(name: &'static str, role: &str, dimensions: Vec<usize>) -> Variable {
     Variable {
-        name: "mesh2d_face_nodes",
+        name,
         kind: Type::Int,
-        dimensions: vec![FACES, CORNERS],
+        dimensions,
         attributes: vec![
-            text("cf_role", "face_node_connectivity"),
-            text("long_name", "nodes of each face, counter-clockwise"),
+            text("cf_role", role),
+            text("long_name", "node numbers; around a face counter-clockwise"),
             ("start_index", Value::Int(1)),
         ],
     }
 }
 
-fn on_faces(
+/// A variable with a value for each edge or face.
+fn on(
+    location: &str,
     name: &'static str,
     kind: Type,
     mut attributes: Vec<(&'static str, Value)>,
 ) -> Variable {
     attributes.push(text("mesh", "mesh2d"));
-    attributes.push(text("location", "face"));
+    attributes.push(text("location", location));
     Variable {
         name,
         kind,
-        dimensions: vec![FACES],
+        dimensions: vec![if location == "edge" { EDGES } else { FACES }],
         attributes,
     }
 }

@@ -43,8 +43,8 @@ pub(crate) const PERFECT: Phase = Phase {
     squared: true,
 };
 
-/// Below this move, as a share of the wished edge length, a node is at rest.
-const REST: f64 = 2e-3;
+/// Below this move, as a share of the wished edge length, local smoothing has done its work.
+const LOCAL_REST: f64 = 1e-2;
 
 /// Sets the wished edge length of every node: on the outline half the length of its two edges,
 /// inside the mean of the neighbours drawn towards `size_m`.
@@ -75,20 +75,36 @@ pub(crate) fn wish(kernel: &mut Kernel, size_m: f64) {
     }
 }
 
-/// Smooths all free nodes: at most `sweeps` sweeps, in the order of their numbers; nodes at rest
-/// whose neighbours rest are passed over.
-pub(crate) fn smooth_all(kernel: &mut Kernel, phase: Phase, sweeps: usize) {
+/// Smooths all free nodes: at most `sweeps` sweeps, in the order of their numbers. A node that moves
+/// by less than `rest` wished lengths rests until a neighbour moves.
+pub(crate) fn smooth_all(kernel: &mut Kernel, phase: Phase, sweeps: usize, rest: f64) {
+    let mut awake = vec![true; kernel.nodes.len()];
+    sweep(kernel, phase, sweeps, rest, &mut awake);
+}
+
+/// Opens tangles: smooths around quads below `below` only, and as far as that makes others move.
+pub(crate) fn untangle(kernel: &mut Kernel, below: f64, sweeps: usize, rest: f64) {
+    let mut awake = vec![false; kernel.nodes.len()];
+    for quad in 0..kernel.quads.len() as u32 {
+        if kernel.lives(quad) && kernel.quality(quad) < below {
+            for node in kernel.quads[quad as usize] {
+                awake[node as usize] = true;
+            }
+        }
+    }
+    sweep(kernel, OPEN, sweeps, rest, &mut awake);
+}
+
+fn sweep(kernel: &mut Kernel, phase: Phase, sweeps: usize, rest: f64, awake: &mut [bool]) {
     let free = |node: &u32| !kernel.held[*node as usize] && kernel.valence[*node as usize] > 0;
     let nodes: Vec<u32> = (0..kernel.nodes.len() as u32).filter(free).collect();
-    let mut awake = vec![true; kernel.nodes.len()];
     for _ in 0..sweeps {
         let mut any = false;
         for &node in &nodes {
             if !std::mem::take(&mut awake[node as usize]) {
                 continue;
             }
-            let moved = relax(kernel, node, phase);
-            if moved > REST {
+            if relax(kernel, node, phase) > rest {
                 any = true;
                 awake[node as usize] = true;
                 for side in kernel.spokes(node) {
@@ -110,7 +126,7 @@ pub(crate) fn smooth_few(kernel: &mut Kernel, nodes: &[u32], phase: Phase, sweep
         for &node in nodes {
             most = most.max(relax(kernel, node, phase));
         }
-        if most < 5.0 * REST {
+        if most < LOCAL_REST {
             break;
         }
     }

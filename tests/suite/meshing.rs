@@ -2,6 +2,8 @@
 
 #[path = "meshing_cases.rs"]
 mod cases;
+#[path = "meshing_strip.rs"]
+mod strip;
 
 use polder::meshing::Options;
 use polder::meshing::check::check;

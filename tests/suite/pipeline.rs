@@ -86,6 +86,7 @@ fn bytes_of(
         seam_budget_quads: 1500,
         threads,
         force: false,
+        resume: false,
     };
     let outcome = build(&job, &|_| {}).unwrap();
     let broken: Vec<_> = outcome.verdict.broken().collect();
