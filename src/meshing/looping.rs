@@ -15,10 +15,10 @@ use crate::meshing::splitting;
 use crate::meshing::splitting::Split;
 use crate::meshing::visits::Visits;
 
-/// Longest walk, and longest loop with its bridges: lines cost O(n²), so longer ones are for methods
-/// that scale.
-const LONGEST: usize = 400;
-const LONGEST_MERGED: usize = 600;
+/// Most visits, and longest loop with its bridges: comparing lines costs O(n²), so more are for
+/// methods that scale. At 700 visits the lines cost a third of the finish.
+const LONGEST: usize = 1200;
+const LONGEST_MERGED: usize = 2400;
 /// A pattern with a least scaled Jacobian above this ends the splitting.
 const PATTERN_LEAST: f64 = 0.5;
 /// Loops up to this length try several lines.

@@ -1,10 +1,11 @@
 //! The best line to split a loop in two.
 //!
 //! Cost of a line after Talbert and Parkinson 1990: the angles at both ends, its length, how badly
-//! whole edges fit on it; with a structuring index as Sarrate and Huerta 2000 have one, here how well
-//! the halves fit a pattern; and (ours) how near it passes other nodes. Where we depart: an angle
-//! part is measured against the nearest multiple of 90 degrees, not against 90, and what the corner
-//! lacked before the split is not charged to it.
+//! whole edges fit on it; with a structuring index and a term for symmetry as Sarrate and Huerta 2000
+//! have them, here how well the halves fit a pattern and how much their lengths differ; and (ours)
+//! how near it passes other nodes. Where we depart: an angle part is measured against the nearest
+//! multiple of 90 degrees, not against 90, and what the corner lacked before the split is not
+//! charged to it.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -18,19 +19,26 @@ use crate::meshing::contour::Contour;
 use crate::meshing::patterns;
 use crate::meshing::sheet::Sheet;
 
-/// Weights of angles, length, fit of whole edges, nearness, structure. Those of the paper (.5, .3
-/// and .2 for the first three) give 5 % more irregular nodes in five cities.
+/// Weights of angles, length, fit of whole edges, nearness, structure, symmetry. Those of the paper
+/// (.5, .3 and .2 for the first three) give 5 % more irregular nodes in five cities. Halves of like
+/// length are worth little for shape, but keep the recursion of long loops shallow.
 const ANGLES: f64 = 1.0;
 const LENGTH: f64 = 0.3;
 const FIT: f64 = 0.1;
 const NEARNESS: f64 = 0.3;
 const STRUCTURE: f64 = 0.1;
+const SYMMETRY: f64 = 0.1;
 /// A node nearer to a line than this many times its spacing is near.
 const NEAR: f64 = 0.8;
 /// No part of an interior angle may be smaller, radians.
 const SHARPEST: f64 = 8.0 * PI / 180.0;
 /// From here on an interior angle is the tip of a slit: where a line leaves it hardly matters.
 const TIP: f64 = 315.0 * PI / 180.0;
+/// All lines of loops up to this length are compared; of longer ones those from reflex corners, and
+/// a share of the others: shifted by an entry or two, most are as good.
+const ALL_COMPARED: usize = 120;
+/// From here on a corner is reflex, radians.
+const REFLEX: f64 = 225.0 * PI / 180.0;
 /// Visible lines that are compared with nearness and structure.
 const COMPARED: usize = 6;
 /// Longest loop whose lines are compared for structure: the halves of longer ones are seldom
@@ -95,9 +103,14 @@ type Candidate = Reverse<(u64, u32, u32, u32)>;
 fn all(contour: &Contour, size_m: f64) -> BinaryHeap<Candidate> {
     let n = contour.len();
     let diagonal_m = diagonal_m(&contour.at);
+    let stride = n.div_ceil(ALL_COMPARED);
     let mut lines = Vec::new();
     for from in 0..n {
         for to in from + 2..n.min(from + n - 1) {
+            let reflex = contour.angle[from].max(contour.angle[to]) > REFLEX;
+            if !reflex && (from + to) % stride != 0 {
+                continue;
+            }
             let Some(angles) = angle_error(contour, from, to) else {
                 continue;
             };
@@ -109,7 +122,11 @@ fn all(contour: &Contour, size_m: f64) -> BinaryHeap<Candidate> {
             };
             let fit = misfit(count, ideal);
             // Splitting can gain up to two right angles in all; the cost stays positive.
-            let cost = ANGLES * (0.5 + angles / TAU) + LENGTH * length / diagonal_m + FIT * fit;
+            let shorter = (to - from).min(n - to + from);
+            let cost = ANGLES * (0.5 + angles / TAU)
+                + LENGTH * length / diagonal_m
+                + FIT * fit
+                + SYMMETRY * (1.0 - 2.0 * shorter as f64 / n as f64);
             lines.push(Reverse((
                 cost.max(0.0).to_bits(),
                 from as u32,
