@@ -98,44 +98,50 @@ impl<'a> LineEdges<'a> {
         order_points(&mut steps);
         let mut chains: Vec<Vec<Step>> = Vec::new();
         for leg in steps.chunk_by(|a, b| a.to == b.from) {
-            match chains.last_mut() {
-                Some(chain) if self.is_folded(chain, leg) => fold(chain, leg),
-                _ => chains.push(leg.to_vec()),
+            let joined = (chains.last_mut()).is_some_and(|chain| self.fold(chain, leg));
+            if !joined {
+                chains.push(leg.to_vec());
             }
         }
         chains
     }
 
-    /// True if `leg` ends where `chain` does and is so short that its direction means nothing: a
-    /// loop or a hook within the tolerance was folded onto mesh edges, which may well have put both
-    /// of its legs onto the same edges in one direction.
-    fn is_folded(&self, chain: &[Step], leg: &[Step]) -> bool {
-        let last = leg.len() - 1;
-        chain[chain.len() - 1].to == leg[last].to
-            && leg[last].to_m - leg[0].from_m <= self.tolerance_m
+    /// Adds `leg` to `chain` although it does not begin at its end, if the difference is a loop or a
+    /// hook within the tolerance: folded onto mesh edges, its legs may well lie on the same edges in
+    /// one direction. Edges that are run through once more are run through once, and a leg that ends
+    /// where the chain does leads away from there.
+    fn fold(&self, chain: &mut Vec<Step>, leg: &[Step]) -> bool {
+        let short = |part: &[Step]| {
+            let span_m = part[part.len() - 1].to_m - part[0].from_m;
+            span_m <= self.tolerance_m
+        };
+        let same = |a: &[Step], b: &[Step]| {
+            (a.iter().zip(b)).all(|(a, b)| (a.from, a.to) == (b.from, b.to))
+        };
+        let repeated = (1..=leg.len().min(chain.len()))
+            .rev()
+            .find(|&n| same(&chain[chain.len() - n..], leg) && short(&leg[..n]));
+        if let Some(n) = repeated {
+            let last = chain.len() - 1;
+            chain[last].to_m = leg[n - 1].to_m;
+            chain.extend(&leg[n..]);
+            return true;
+        }
+        let (begin_m, end_m) = (leg[0].from_m, leg[leg.len() - 1].to_m);
+        let leads_back = chain[chain.len() - 1].to == leg[leg.len() - 1].to;
+        if !leads_back || !short(leg) {
+            return false;
+        }
+        chain.extend(leg.iter().rev().map(|step| Step {
+            from: step.to,
+            to: step.from,
+            from_m: begin_m + (end_m - step.to_m),
+            to_m: begin_m + (end_m - step.from_m),
+            forward: !step.forward,
+            ..*step
+        }));
+        true
     }
-}
-
-/// Adds a folded leg to a chain: what repeats its end is that end, another one leads away from it.
-fn fold(chain: &mut Vec<Step>, leg: &[Step]) {
-    let (begin_m, end_m) = (leg[0].from_m, leg[leg.len() - 1].to_m);
-    let repeats = (chain.iter().rev())
-        .zip(leg.iter().rev())
-        .take_while(|(a, b)| (a.from, a.to) == (b.from, b.to))
-        .count();
-    if repeats == leg.len() {
-        let last = chain.len() - 1;
-        chain[last].to_m = end_m;
-        return;
-    }
-    chain.extend(leg.iter().rev().map(|step| Step {
-        from: step.to,
-        to: step.from,
-        from_m: begin_m + (end_m - step.to_m),
-        to_m: begin_m + (end_m - step.from_m),
-        forward: !step.forward,
-        ..*step
-    }));
 }
 
 /// Steps of no length (several mesh edges for one point of the line, as where an end was joined to
