@@ -126,6 +126,6 @@ fn check_sees_every_broken_promise() {
             patch.nodes.extend([low(a), low(b)]);
             patch.quads.push([first, first + 1, b, a]);
         })
-        .contains("used once")
+        .contains("on the right of a walk")
     );
 }
