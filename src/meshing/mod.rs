@@ -106,7 +106,7 @@ impl Options {
                 Method::Looping,
                 Method::Indirect,
             ],
-            good_enough: 0.9,
+            good_enough: 0.84,
         }
     }
 }
