@@ -188,6 +188,8 @@ impl Writer {
         let mut old = self.out.clone().into_os_string();
         old.push(".old");
         let old = PathBuf::from(old);
+        // A run that was killed between the two renames left it.
+        remove(&old)?;
         let replaced = self.out.symlink_metadata().is_ok();
         if replaced && self.existing == Existing::Refuse {
             return Err(Error::Exists(self.out.clone()));
@@ -201,14 +203,7 @@ impl Writer {
             }
             return Err(refuse("rename", e));
         }
-        if replaced {
-            let gone = if old.is_dir() {
-                fs::remove_dir_all(&old)
-            } else {
-                fs::remove_file(&old)
-            };
-            gone.map_err(|e| Error::io("remove", &old, e))?;
-        }
+        remove(&old)?;
         store::sync_dir(self.out.parent().unwrap_or(Path::new(".")))
     }
 
@@ -216,6 +211,16 @@ impl Writer {
     pub fn discard(self) -> Result<(), Error> {
         fs::remove_dir_all(&self.partial).map_err(|e| Error::io("remove", &self.partial, e))
     }
+}
+
+/// Removes a file or a directory, if it is there.
+fn remove(path: &Path) -> Result<(), Error> {
+    let gone = match path.symlink_metadata() {
+        Ok(it) if it.is_dir() => fs::remove_dir_all(path),
+        Ok(_) => fs::remove_file(path),
+        Err(_) => Ok(()),
+    };
+    gone.map_err(|e| Error::io("remove", path, e))
 }
 
 /// Where a mesh with the name `out` grows.
