@@ -6,6 +6,7 @@
 //! filling better than what was there. The number of edges of an outline of quads is even, so the
 //! filling always exists.
 
+use crate::geometry::quad::distance;
 use crate::geometry::quad::scaled_jacobian;
 use crate::meshing::draft::Draft;
 use crate::meshing::last_resort;
@@ -15,8 +16,8 @@ use crate::meshing::triangulate::triangulate;
 use crate::meshing::visits::Visits;
 use rustc_hash::FxHashMap;
 
-/// Quads below this scaled Jacobian are taken out: at .02 a corner is sharper than 1.2 degrees or
-/// as near to flat, and single precision already sees a line.
+/// Quads below this scaled Jacobian, or with a side below this share of the size, are taken out: at
+/// .02 a corner is sharper than 1.2 degrees or as near to flat, and a time step is lost.
 const BAD: f64 = 0.02;
 
 /// Widest hole, rings of quads around the bad one.
@@ -29,7 +30,7 @@ const ROUNDS: usize = 3;
 pub(crate) fn refill(draft: &mut Draft, visits: &Visits, size_m: f64) -> usize {
     let mut filled = 0;
     for _ in 0..ROUNDS {
-        let bad = bad_quads(draft);
+        let bad = bad_quads(draft, size_m);
         if bad.is_empty() {
             break;
         }
@@ -61,14 +62,17 @@ pub(crate) fn refill(draft: &mut Draft, visits: &Visits, size_m: f64) -> usize {
     filled
 }
 
-fn quality(draft: &Draft, quad: [u32; 4]) -> f64 {
-    scaled_jacobian(&quad.map(|node| draft.nodes[node as usize]))
+/// The scaled Jacobian, or the shortest side over the size if that is less.
+fn quality(draft: &Draft, quad: [u32; 4], size_m: f64) -> f64 {
+    let corners = quad.map(|node| draft.nodes[node as usize]);
+    let sides = (0..4).map(|k| distance(corners[k], corners[(k + 1) % 4]) / size_m);
+    sides.fold(scaled_jacobian(&corners), f64::min)
 }
 
-fn bad_quads(draft: &Draft) -> Vec<u32> {
+fn bad_quads(draft: &Draft, size_m: f64) -> Vec<u32> {
     // Settled quads are perfect.
     (draft.settled as u32..draft.quads.len() as u32)
-        .filter(|&quad| quality(draft, draft.quads[quad as usize]) < BAD)
+        .filter(|&quad| quality(draft, draft.quads[quad as usize], size_m) < BAD)
         .collect()
 }
 
@@ -129,7 +133,7 @@ impl Around {
 /// A filling of `hole` whose worst quad is better than the hole's; new nodes are added to `draft`.
 fn fill(draft: &mut Draft, visits: &Visits, hole: &[u32], size_m: f64) -> Option<Vec<[u32; 4]>> {
     let worst = (hole.iter())
-        .map(|&quad| quality(draft, draft.quads[quad as usize]))
+        .map(|&quad| quality(draft, draft.quads[quad as usize], size_m))
         .fold(f64::INFINITY, f64::min);
     let (outline, names) = outline(draft, visits, hole)?;
     let scattered = scatter(&outline, size_m);
@@ -140,7 +144,7 @@ fn fill(draft: &mut Draft, visits: &Visits, hole: &[u32], size_m: f64) -> Option
         };
         let made = last_resort::mesh(&pairing::join(&triangles, outline.len()));
         let least = (made.quads.iter())
-            .map(|&quad| quality(&made, quad))
+            .map(|&quad| quality(&made, quad, size_m))
             .fold(f64::INFINITY, f64::min);
         if least > worst.max(0.0) && best.as_ref().is_none_or(|it| least > it.0) {
             best = Some((least, made));

@@ -23,7 +23,7 @@
 //! - `scatter`, `triangulate`, `pairing`: lattice points, constrained Delaunay (spade), near-
 //!   minimum-weight pairs.
 //! - `last_resort`: any [`join`] of any triangulation with rings; its page says why it cannot fail.
-//! - `kernel`, `edits`, `improve`, `smooth`: the finish, on the part of a draft that is not
+//! - `kernel`, `edits`, `improve`, `star`, `smooth`: the finish, on the part of a draft that is not
 //!   settled. Operations after Kinney (1997) and Canann, Muthukrishnan, Phillips (1998), each with
 //!   undo; smoothing after Garanzha and others (2021).
 //!
@@ -67,6 +67,7 @@ pub mod score;
 mod sheet;
 mod smooth;
 mod splitting;
+mod star;
 mod strip;
 mod strip_border;
 mod triangulate;

@@ -25,6 +25,9 @@ type CurveRow = (Vec<u32>, Vec<u32>, u32, u32, bool);
 /// Line, from, to.
 type Stretch = (u32, f64, f64);
 
+/// Word, sentence, feature, place.
+type FindingRow = (String, String, Option<u32>, Option<[f64; 2]>);
+
 #[derive(Encode, Decode)]
 pub(super) struct Plan {
     points: Vec<(i32, i32)>,
@@ -38,7 +41,7 @@ pub(super) struct Plan {
     dropped: Vec<(Stretch, u8)>,
     changes: Vec<(String, i32, i32, f64)>,
     tally: (Vec<(String, u64, f64)>, [f64; 4]),
-    findings: Vec<(String, String, Option<u32>, Option<[f64; 2]>)>,
+    findings: Vec<FindingRow>,
 }
 
 #[derive(Encode, Decode)]

@@ -129,7 +129,9 @@ fn a_cell_that_names_no_node_is_found() {
 
 #[test]
 fn a_missing_cell_is_a_crack() {
-    let found = broken(|it| drop(it.patches[0].quads.pop()));
+    let found = broken(|it| {
+        it.patches[0].quads.pop();
+    });
     assert!(
         ["conforming", "areas", "outline"]
             .iter()

@@ -18,9 +18,12 @@ const OPTIONS: Options = Options {
     tolerance: Tolerance::ShareOfSize(0.5),
 };
 
+/// What a line is, and its points in millimetres.
+type Drawn<'a> = (&'a str, Vec<(i32, i32)>);
+
 /// Lines in millimetres; the first is the boundary, rings named "hole" are holes.
 fn domain(lines: &[(&str, Vec<(i32, i32)>)]) -> Domain {
-    let line = |(source, (what, points)): (usize, &(&str, Vec<(i32, i32)>))| Line {
+    let line = |(source, (what, points)): (usize, &Drawn)| Line {
         source: source as u32,
         role: match *what {
             "boundary" => Role::Boundary,
