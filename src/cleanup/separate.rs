@@ -7,6 +7,7 @@ use std::collections::BinaryHeap;
 use crate::cleanup::graph::Graph;
 use crate::cleanup::importance::Importance;
 use crate::cleanup::importance::is_rim_corner;
+use crate::cleanup::measure::RIM_RANK;
 use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;
 use crate::cleanup::operate::Bend;
@@ -30,6 +31,11 @@ pub(super) struct Narrow {
 /// Edges within tolerance of several ways around could be bent to and fro without end; this many
 /// steps at one node are enough for all honest work.
 const TRIES_MAX: u8 = 16;
+
+/// Where a node and an edge are farther apart than this share of the mesh size, both move.
+const MEET_EDGE: f64 = 0.2;
+/// The same for two nodes.
+const MEET_NODES: f64 = 0.26;
 
 /// A node too near to something.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -246,12 +252,14 @@ pub(super) fn unite(
     if is_rim_corner(graph, give) && !is_rim_corner(graph, keep) {
         return None;
     }
-    let (at, moved) = (
-        graph.point(keep),
-        distance(graph.metres(u), graph.metres(v)),
-    );
+    let moved = distance(graph.metres(u), graph.metres(v));
+    let wide = moved > MEET_NODES * graph.size_at_m(keep);
+    if wide && let Some(met) = meet(graph, keep, give, share) {
+        graph.note(what, graph.point(met), 0.5 * moved);
+        return Some(met);
+    }
     if graph.merge(give, keep, share) {
-        graph.note(what, at, moved);
+        graph.note(what, graph.point(keep), moved);
         return Some(keep);
     }
     if is_rim_corner(graph, keep) && !is_rim_corner(graph, give) {
@@ -261,14 +269,24 @@ pub(super) fn unite(
         graph.note(what, graph.point(give), moved);
         return Some(give);
     }
-    let middle = middle(at, graph.point(give));
-    if graph.shift(keep, middle, share) {
-        if graph.merge(give, keep, share) {
-            graph.note(what, middle, 0.5 * moved);
-            return Some(keep);
-        }
-        graph.shift(keep, at, f64::INFINITY);
+    if !wide && let Some(met) = meet(graph, keep, give, share) {
+        graph.note(what, graph.point(met), 0.5 * moved);
+        return Some(met);
     }
+    None
+}
+
+/// Makes one node of two, half way between them.
+fn meet(graph: &mut Graph, keep: u32, give: u32, share: f64) -> Option<u32> {
+    let at = graph.point(keep);
+    let place = middle(at, graph.point(give));
+    if is_rim_corner(graph, keep) || !graph.shift(keep, place, share) {
+        return None;
+    }
+    if graph.merge(give, keep, share) {
+        return Some(keep);
+    }
+    graph.shift(keep, at, f64::INFINITY);
     None
 }
 
@@ -305,38 +323,38 @@ pub(super) fn join(graph: &mut Graph, node: u32, edge: u32, near: f64, share: f6
     if t <= 0.0 || t >= 1.0 {
         return None;
     }
-    let moved = [graph.point(node)];
-    let bends = Importance::of(graph, node).rank > rank || is_rim_corner(graph, node);
+    let foot = [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
+    let place = graph.point(node);
+    let moves = !is_rim_corner(graph, node);
+    if moves && gap > MEET_EDGE * size_m && graph.degree(node) > 1 && rank < RIM_RANK {
+        let half_way = [0.5 * (at[0] + foot[0]), 0.5 * (at[1] + foot[1])];
+        if let Some(landed) = land(graph, node, edge, half_way, share) {
+            graph.note(what, place, 0.5 * gap);
+            return Some(landed);
+        }
+    }
+    let bends = !moves || Importance::of(graph, node).rank > rank;
     if bends && graph.bend(edge, Bend::To(node), share).is_some() {
-        graph.note(what, moved[0], gap);
+        graph.note(what, place, gap);
         return Some(node);
     }
-    if is_rim_corner(graph, node) {
-        return None;
-    }
-    if let Some(landed) = land(
-        graph,
-        node,
-        edge,
-        [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])],
-        share,
-    ) {
-        graph.note(what, graph.point(landed), gap);
+    if moves && let Some(landed) = land(graph, node, edge, foot, share) {
+        graph.note(what, place, gap);
         return Some(landed);
     }
-    if !bends && graph.bend(edge, Bend::To(node), share).is_some() {
-        graph.note(what, moved[0], gap);
+    if moves && !bends && graph.bend(edge, Bend::To(node), share).is_some() {
+        graph.note(what, place, gap);
         return Some(node);
     }
     None
 }
 
-/// Moves a node onto the place `foot` of an edge.
-fn land(graph: &mut Graph, node: u32, edge: u32, foot: Xy, share: f64) -> Option<u32> {
+/// Moves a node to `place`, and the edge too.
+fn land(graph: &mut Graph, node: u32, edge: u32, place: Xy, share: f64) -> Option<u32> {
     let cell_m = graph.measure.grid().cell_m;
     let p = Point::new(
-        (foot[0] / cell_m).round() as i32,
-        (foot[1] / cell_m).round() as i32,
+        (place[0] / cell_m).round() as i32,
+        (place[1] / cell_m).round() as i32,
     );
     let there = graph.bend(edge, Bend::At(p), share)?;
     if graph.merge(node, there, share) {
