@@ -1,6 +1,6 @@
 //! Parity of synthetic cities of growing size: time, proof, memory; beside it the work of HiGHS.
 //!
-//! `cargo bench --bench parity [-- LARGEST]`, with LARGEST sub-domains at most (default 100 000).
+//! `cargo bench --bench parity [-- LARGEST]`, with LARGEST sub-domains at most (default 100 000; `--smoke`: 1000).
 
 use polder::intervals::goals::Goals;
 use polder::parity;
@@ -13,10 +13,11 @@ use polder::partition::subdomains::Subdomain;
 use std::time::Instant;
 
 fn main() {
+    let smoke = std::env::args().any(|word| word == "--smoke");
     let largest = std::env::args()
         .filter_map(|word| word.parse().ok())
         .next()
-        .unwrap_or(100_000);
+        .unwrap_or(if smoke { 1000 } else { 100_000 });
     println!(
         "family  sub-domains   curves     odd  proven  extra cost        gap  events  rows  seconds  + HiGHS"
     );

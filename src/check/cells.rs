@@ -57,9 +57,14 @@ impl Cells {
                     format!("sub-domain {subdomain}, quad {k}: nodes {quad:?} are not distinct")
                 });
             }
-            let least = corner_jacobians(&corners)
-                .into_iter()
-                .fold(f64::INFINITY, least);
+            let mut least = least_jacobian_m2(&corners);
+            if least < SMALL_M2 {
+                // So thin a cell may fold where coordinates are projected, as exports are.
+                let o = self.origin_m;
+                least = least.min(least_jacobian_m2(
+                    &corners.map(|p| [p[0] + o[0], p[1] + o[1]]),
+                ));
+            }
             self.least_m2 = self.least_m2.min(least);
             // Not `<=`: a NaN is no positive Jacobian either.
             if least.is_nan() || least <= 0.0 {
@@ -86,7 +91,14 @@ impl Cells {
     }
 }
 
-/// The lesser of two, NaN if either is.
-fn least(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a < b { a } else { b }
+/// Jacobians below this are computed again from projected coordinates, m². Those have an error of
+/// about 1e-9 m, so a corner between sides shorter than 100 km cannot change its sign above it.
+const SMALL_M2: f64 = 1e-3;
+
+/// The least corner Jacobian, m²; NaN if any is.
+fn least_jacobian_m2(corners: &[Xy; 4]) -> f64 {
+    let lesser = |a: f64, b: f64| if a.is_nan() || a < b { a } else { b };
+    corner_jacobians(corners)
+        .into_iter()
+        .fold(f64::INFINITY, lesser)
 }

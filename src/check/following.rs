@@ -1,6 +1,6 @@
 //! Promise `lines`: each constraint line is there from end to end, as itself.
 
-use crate::check::segments::distance_m;
+use crate::check::segments::nearest_m;
 use crate::check::verdict::Promise;
 use crate::check::verdict::projected;
 use crate::chunk::chains::LineEdges;
@@ -15,7 +15,7 @@ const SAMPLE: f64 = 0.1;
 pub(crate) fn check(mesh: &Mesh, allowed_m: f64) -> Promise {
     let mut promise = Promise::new("lines");
     let lines = mesh.lines();
-    let edges = LineEdges::of(mesh.frame(), lines.lines());
+    let edges = LineEdges::of(mesh);
     let dropped = Stretches::of(&lines);
     let mut totals = Totals::default();
     for line in (0..lines.lines()).filter(|&line| lines.role[line] == 0) {
@@ -173,10 +173,12 @@ impl Follow<'_> {
                 let t = part as f64 / parts as f64;
                 let p = [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
                 let station = self.stations_m[k] + t * length;
+                if self.is_dropped(station, station) {
+                    continue;
+                }
                 let distance = self.to_steps_m(p, station);
-                if distance <= self.allowed_m {
-                    farthest = farthest.max(distance);
-                } else if !self.is_dropped(station, station) {
+                farthest = farthest.max(distance.min(self.allowed_m));
+                if distance > self.allowed_m {
                     promise.broken(projected(p, self.origin_m), || {
                         format!(
                             "{}: lost at station {station:.3} m ({distance:.3} m)",
@@ -195,9 +197,7 @@ impl Follow<'_> {
     /// are long and the right edge is nearly always there.
     fn to_steps_m(&self, p: Xy, station: f64) -> f64 {
         let at = |step: &Step| [step.from, step.to].map(|node| self.nodes[node as usize]);
-        let nearest = |steps: &[Step]| {
-            (steps.iter()).fold(f64::INFINITY, |d, step| d.min(distance_m(p, at(step))))
-        };
+        let nearest = |steps: &[Step]| nearest_m(p, steps.iter().map(at));
         let reach = 2.0 * self.allowed_m;
         let from = self.steps.partition_point(|s| s.from_m < station - reach);
         let to = self.steps.partition_point(|s| s.from_m <= station + reach);
@@ -239,11 +239,8 @@ impl Follow<'_> {
 
     /// Distance from `p` to the line, near the stations of `step` first.
     fn to_line_m(&self, p: Xy, step: &Step) -> f64 {
-        let nearest = |from: usize, to: usize| {
-            (from..to).fold(f64::INFINITY, |d, k| {
-                d.min(distance_m(p, [self.places[k], self.places[k + 1]]))
-            })
-        };
+        let segment = |k: usize| [self.places[k], self.places[k + 1]];
+        let nearest = |from: usize, to: usize| nearest_m(p, (from..to).map(segment));
         let segments = self.places.len() - 1;
         let reach = 2.0 * self.allowed_m;
         let before = |m: f64| self.stations_m.partition_point(|&s| s < m);

@@ -8,7 +8,8 @@
 //!    walks are closed; no edge and no position of a boundary node occurs twice.
 //! 4. `even`: each sub-domain has an even number of boundary edges, at least 4.
 //! 5. `quads`: every cell has four distinct nodes of its patch, and every node is used.
-//! 6. `jacobians`: every cell has four positive corner Jacobians, from the coordinates as stored.
+//! 6. `jacobians`: every cell has four positive corner Jacobians, from the coordinates as stored
+//!    and as exported (projected).
 //! 7. `conforming`: each edge is used once or twice. Inside a patch, each edge used once is an edge
 //!    of its walks and each edge of the walks is used once (both sides of a free line once each);
 //!    all others twice, in opposite directions. With 3: no hanging node, no crack, no hole.

@@ -8,9 +8,8 @@ use crate::chunk::views::PatchView;
 use crate::geometry::point::Xy;
 use crate::geometry::quad::area;
 use crate::geometry::quad::corner_angles_deg;
+use crate::geometry::quad::corner_jacobians;
 use crate::geometry::quad::distance;
-use crate::geometry::quad::hydraulic_size_m;
-use crate::geometry::quad::scaled_jacobian;
 use crate::partition::subdomains::OUTSIDE;
 
 /// Counts in bins of equal width; what lies outside falls into the first or last bin.
@@ -181,6 +180,44 @@ fn share_irregular(valence: &[u64; 16]) -> f64 {
     (all - valence[4]) as f64 / all.max(1) as f64
 }
 
+/// The measures of [`geometry::quad`](crate::geometry::quad) for one cell, all from one set of side
+/// lengths: roots are most of the cost of a check.
+struct Shape {
+    sides_m: [f64; 4],
+    area_m2: f64,
+    scaled_jacobian: f64,
+    hydraulic_m: f64,
+}
+
+impl Shape {
+    fn of(corners: &[Xy; 4]) -> Shape {
+        let sides_m = std::array::from_fn(|k| {
+            let (p, q) = (corners[k], corners[(k + 1) % 4]);
+            let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
+            (dx * dx + dy * dy).sqrt()
+        });
+        let mut scaled_jacobian = 1.0_f64;
+        for (k, jacobian) in corner_jacobians(corners).into_iter().enumerate() {
+            let scale: f64 = sides_m[k] * sides_m[(k + 3) % 4];
+            let sine = if scale > 0.0 { jacobian / scale } else { 0.0 };
+            scaled_jacobian = scaled_jacobian.min(sine);
+        }
+        let area_m2 = area(corners);
+        let perimeter: f64 = sides_m.iter().sum();
+        let hydraulic_m = if perimeter > 0.0 {
+            4.0 * area_m2.abs() / perimeter
+        } else {
+            0.0
+        };
+        Shape {
+            sides_m,
+            area_m2,
+            scaled_jacobian,
+            hydraulic_m,
+        }
+    }
+}
+
 /// Quality in the making: patches are added one by one.
 pub(crate) struct Measuring<'a> {
     frame: FrameView<'a>,
@@ -236,21 +273,17 @@ impl<'a> Measuring<'a> {
                 let around = &mut self.inside[node as usize];
                 *around = around.saturating_add(1);
             }
-            let shape = self.measure(&corners, size_m);
-            for k in 0..4 {
-                let ends = [quad[k], quad[(k + 1) % 4]];
-                if ends
-                    .iter()
-                    .all(|&node| node as usize >= patch.boundary.len())
-                {
-                    let length = distance(corners[k], corners[(k + 1) % 4]);
-                    self.quality.edge_open_over_size.add(length / size_m);
-                }
+            let shape = Shape::of(&corners);
+            self.measure(&corners, &shape, size_m);
+            let is_open = quad.map(|node| node as usize >= patch.boundary.len());
+            for k in (0..4).filter(|&k| is_open[k] && is_open[(k + 1) % 4]) {
+                let length = shape.sides_m[k];
+                self.quality.edge_open_over_size.add(length / size_m);
             }
-            share.area_m2 += area(&corners);
-            share.scaled_jacobian_sum += shape[0];
-            share.scaled_jacobian_min = share.scaled_jacobian_min.min(shape[0]);
-            self.keep_worst(&corners, shape, patch);
+            share.area_m2 += shape.area_m2;
+            share.scaled_jacobian_sum += shape.scaled_jacobian;
+            share.scaled_jacobian_min = share.scaled_jacobian_min.min(shape.scaled_jacobian);
+            self.keep_worst(&corners, &shape, patch);
         }
         share.subdomains += 1;
         share.quads += patch.quads.len() as u64;
@@ -272,46 +305,33 @@ impl<'a> Measuring<'a> {
         }
     }
 
-    /// Scaled Jacobian and hydraulic size of one cell, after adding all its measures.
-    fn measure(&mut self, corners: &[Xy; 4], size_m: f64) -> [f64; 2] {
+    fn measure(&mut self, corners: &[Xy; 4], shape: &Shape, size_m: f64) {
         let quality = &mut self.quality;
-        let shape = [scaled_jacobian(corners), hydraulic_size_m(corners)];
-        quality.scaled_jacobian.add(shape[0]);
-        quality.hydraulic_over_size.add(shape[1] / size_m);
-        quality.hydraulic_min_m = quality.hydraulic_min_m.min(shape[1]);
-        quality.quads_wished += area(corners) / (size_m * size_m);
+        quality.scaled_jacobian.add(shape.scaled_jacobian);
+        quality.hydraulic_over_size.add(shape.hydraulic_m / size_m);
+        quality.hydraulic_min_m = quality.hydraulic_min_m.min(shape.hydraulic_m);
+        quality.quads_wished += shape.area_m2 / (size_m * size_m);
         for angle in corner_angles_deg(corners) {
             quality.angle_deg.add(angle);
         }
         // Each side once a cell: an inner edge comes twice, one on the outline is added again later.
-        for k in 0..4 {
-            let length = distance(corners[k], corners[(k + 1) % 4]);
+        for length in shape.sides_m {
             quality.edge_over_size.add(length / size_m);
         }
-        shape
     }
 
-    fn keep_worst(&mut self, corners: &[Xy; 4], shape: [f64; 2], patch: &PatchView) {
+    fn keep_worst(&mut self, corners: &[Xy; 4], shape: &Shape, patch: &PatchView) {
         let o = self.origin_m;
         let place = || Place {
             corners_m: corners.map(|p| [p[0] + o[0], p[1] + o[1]]),
-            scaled_jacobian: shape[0],
-            hydraulic_m: shape[1],
+            scaled_jacobian: shape.scaled_jacobian,
+            hydraulic_m: shape.hydraulic_m,
             subdomain: patch.subdomain,
             method: patch.method,
         };
-        keep(
-            &mut self.quality.worst,
-            |it| it.scaled_jacobian,
-            shape[0],
-            place,
-        );
-        keep(
-            &mut self.quality.smallest,
-            |it| it.hydraulic_m,
-            shape[1],
-            place,
-        );
+        let (worst, smallest) = (&mut self.quality.worst, &mut self.quality.smallest);
+        keep(worst, |it| it.scaled_jacobian, shape.scaled_jacobian, place);
+        keep(smallest, |it| it.hydraulic_m, shape.hydraulic_m, place);
     }
 
     /// What can only be said when all patches were added.

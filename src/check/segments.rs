@@ -3,8 +3,16 @@
 use crate::geometry::point::Xy;
 use crate::geometry::quad::cross;
 
-/// Distance from `p` to the segment `a b`, metres.
-pub(crate) fn distance_m(p: Xy, [a, b]: [Xy; 2]) -> f64 {
+/// Distance from `p` to the nearest of `segments`, metres; infinite without any.
+pub(crate) fn nearest_m(p: Xy, segments: impl Iterator<Item = [Xy; 2]>) -> f64 {
+    segments
+        .map(|segment| distance2_m2(p, segment))
+        .fold(f64::INFINITY, f64::min)
+        .sqrt()
+}
+
+/// Squared distance from `p` to the segment `a b`, m².
+fn distance2_m2(p: Xy, [a, b]: [Xy; 2]) -> f64 {
     let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
     let length2 = dx * dx + dy * dy;
     let along = (p[0] - a[0]) * dx + (p[1] - a[1]) * dy;
@@ -13,7 +21,8 @@ pub(crate) fn distance_m(p: Xy, [a, b]: [Xy; 2]) -> f64 {
     } else {
         0.0
     };
-    (p[0] - a[0] - t * dx).hypot(p[1] - a[1] - t * dy)
+    let (x, y) = (p[0] - a[0] - t * dx, p[1] - a[1] - t * dy);
+    x * x + y * y
 }
 
 /// True if the segments cross at an inner point of both. Touching does not count.
@@ -56,12 +65,10 @@ impl Segments {
     /// Distance from `p` to the nearest segment if it is at most `limit_m`, metres.
     pub fn distance_within_m(&self, p: Xy, limit_m: f64) -> Option<f64> {
         let cell = |v: f64| (v / self.cell_m).floor() as i32;
-        let mut nearest = f64::INFINITY;
-        for x in cell(p[0] - limit_m)..=cell(p[0] + limit_m) {
-            for k in self.column(x, cell(p[1] - limit_m), cell(p[1] + limit_m)) {
-                nearest = nearest.min(distance_m(p, self.all[k]));
-            }
-        }
+        let (low, high) = (cell(p[1] - limit_m), cell(p[1] + limit_m));
+        let columns = cell(p[0] - limit_m)..=cell(p[0] + limit_m);
+        let near = columns.flat_map(|x| self.column(x, low, high));
+        let nearest = nearest_m(p, near.map(|k| self.all[k]));
         (nearest <= limit_m).then_some(nearest)
     }
 

@@ -1,5 +1,6 @@
 //! The mesh edges of each line, in the order and direction in which it was digitised.
 
+use crate::chunk::reader::Mesh;
 use crate::chunk::views::FrameView;
 
 /// One mesh edge that represents a stretch of a line, in the line's direction.
@@ -29,13 +30,14 @@ pub struct LineEdges<'a> {
     piece: Vec<u32>,
     /// Line by line: row of the edge's first node in `curve_nodes`.
     entry: Vec<u32>,
-    /// The curve of each edge follows from this by search.
-    curve_start: &'a [u32],
+    /// A stretch no longer than this may lie on its edge either way, metres.
+    tolerance_m: f64,
 }
 
 impl<'a> LineEdges<'a> {
-    /// Sorts the pieces of `frame` by their line, of which there are `lines`. O(pieces).
-    pub fn of(frame: FrameView<'a>, lines: usize) -> LineEdges<'a> {
+    /// Sorts the pieces of the frame by their line. O(pieces).
+    pub fn of(mesh: &'a Mesh) -> LineEdges<'a> {
+        let (frame, lines) = (mesh.frame(), mesh.lines().lines());
         let mut start = vec![0_u32; lines + 1];
         for &line in frame.piece_line {
             start[line as usize + 1] += 1;
@@ -61,13 +63,14 @@ impl<'a> LineEdges<'a> {
             start,
             piece,
             entry,
-            curve_start: frame.curve_start,
+            tolerance_m: mesh.index().tolerance_m,
         }
     }
 
     fn step(&self, slot: usize) -> Step {
         let (row, entry) = (self.piece[slot] as usize, self.entry[slot] as usize);
-        let curve = self.curve_start.partition_point(|&s| s as usize <= entry) - 1;
+        let starts = self.frame.curve_start;
+        let curve = starts.partition_point(|&s| s as usize <= entry) - 1;
         let [a, b] = [0, 1].map(|k| self.frame.curve_nodes[entry + k]);
         let [p, q] = [self.frame.piece_from_m[row], self.frame.piece_to_m[row]];
         let forward = p <= q;
@@ -94,13 +97,50 @@ impl<'a> LineEdges<'a> {
         });
         order_points(&mut steps);
         let mut chains: Vec<Vec<Step>> = Vec::new();
-        for step in steps {
-            match chains.last_mut() {
-                Some(chain) if chain[chain.len() - 1].to == step.from => chain.push(step),
-                _ => chains.push(vec![step]),
+        for leg in steps.chunk_by(|a, b| a.to == b.from) {
+            let joined = (chains.last_mut()).is_some_and(|chain| self.fold(chain, leg));
+            if !joined {
+                chains.push(leg.to_vec());
             }
         }
         chains
+    }
+
+    /// Adds `leg` to `chain` although it does not begin at its end, if the difference is a loop or a
+    /// hook within the tolerance: folded onto mesh edges, its legs may well lie on the same edges in
+    /// one direction. Edges that are run through once more are run through once, and a leg that ends
+    /// where the chain does leads away from there.
+    fn fold(&self, chain: &mut Vec<Step>, leg: &[Step]) -> bool {
+        let short = |part: &[Step]| {
+            let span_m = part[part.len() - 1].to_m - part[0].from_m;
+            span_m <= self.tolerance_m
+        };
+        let same = |a: &[Step], b: &[Step]| {
+            (a.iter().zip(b)).all(|(a, b)| (a.from, a.to) == (b.from, b.to))
+        };
+        let repeated = (1..=leg.len().min(chain.len()))
+            .rev()
+            .find(|&n| same(&chain[chain.len() - n..], leg) && short(&leg[..n]));
+        if let Some(n) = repeated {
+            let last = chain.len() - 1;
+            chain[last].to_m = leg[n - 1].to_m;
+            chain.extend(&leg[n..]);
+            return true;
+        }
+        let (begin_m, end_m) = (leg[0].from_m, leg[leg.len() - 1].to_m);
+        let leads_back = chain[chain.len() - 1].to == leg[leg.len() - 1].to;
+        if !leads_back || !short(leg) {
+            return false;
+        }
+        chain.extend(leg.iter().rev().map(|step| Step {
+            from: step.to,
+            to: step.from,
+            from_m: begin_m + (end_m - step.to_m),
+            to_m: begin_m + (end_m - step.from_m),
+            forward: !step.forward,
+            ..*step
+        }));
+        true
     }
 }
 

@@ -136,10 +136,22 @@ fn rows<const N: usize, T: Scalar>(vector: Vector<'_, T>) -> &[[T; N]] {
 pub(crate) fn index(file: &MappedFile) -> Result<IndexView<'_>, Error> {
     let table = root::<index_file::Index>(file, index_file::INDEX_IDENTIFIER)?;
     expect_schema(file, table.schema())?;
-    let box_m: [f64; 4] = slice(table.box_m())
-        .try_into()
-        .map_err(|_| Error::corrupt(&file.path, "the box has not four numbers"))?;
-    let view = IndexView {
+    if table.box_m().len() != 4 {
+        return Err(Error::corrupt(&file.path, "the box has not four numbers"));
+    }
+    let view = index_view(&table);
+    shape::index(&view).map_err(|what| Error::corrupt(&file.path, what))?;
+    Ok(view)
+}
+
+/// The view of an index that `index` has verified before.
+pub(crate) fn index_again(file: &MappedFile) -> IndexView<'_> {
+    // SAFETY: the same bytes passed the verifier.
+    index_view(&unsafe { flatbuffers::root_unchecked::<index_file::Index>(file.buffer()) })
+}
+
+fn index_view<'a>(table: &index_file::Index<'a>) -> IndexView<'a> {
+    IndexView {
         polder: table.polder(),
         epsg: (table.epsg() != 0).then(|| table.epsg()),
         grid: Grid {
@@ -153,7 +165,7 @@ pub(crate) fn index(file: &MappedFile) -> Result<IndexView<'_>, Error> {
         boundary_nodes: table.boundary_nodes(),
         nodes: table.nodes(),
         quads: table.quads(),
-        box_m,
+        box_m: std::array::from_fn(|k| table.box_m().get(k)),
         chunk_start: slice(table.chunk_start()),
         patch_subdomain: slice(table.patch_subdomain()),
         patch_method: slice(table.patch_method()),
@@ -162,9 +174,7 @@ pub(crate) fn index(file: &MappedFile) -> Result<IndexView<'_>, Error> {
         files: (table.files().iter())
             .map(|it| (it.name(), it.bytes(), it.crc32()))
             .collect(),
-    };
-    shape::index(&view).map_err(|what| Error::corrupt(&file.path, what))?;
-    Ok(view)
+    }
 }
 
 /// The verified view of a frame.

@@ -11,7 +11,7 @@ use crate::noding::arrangement::Arrangement;
 use crate::noding::arrangement::Piece;
 
 /// A stretch of a line: line, from, to.
-type Stretch = (LineId, f64, f64);
+pub(super) type Stretch = (LineId, f64, f64);
 
 /// Stretches shorter than this are rounding, metres.
 const ROUNDING_M: f64 = 1e-6;
@@ -19,14 +19,14 @@ const ROUNDING_M: f64 = 1e-6;
 /// What the input has and the result does not, with the reason, and the table of figures.
 pub(super) fn audit(graph: &Graph, input: &Arrangement) -> (Vec<Dropped>, Tally) {
     let wanted = stretches(graph, input.pieces.iter());
-    let live = || graph.edges.iter().filter(|edge| edge.alive);
-    let there = stretches(graph, live().flat_map(|edge| &edge.pieces));
+    let live = graph.edges.iter().filter(|edge| edge.alive);
+    let there = stretches(graph, live.flat_map(|edge| &edge.pieces));
     let carriers = carriers(graph);
     let mut dropped: Vec<Dropped> = Vec::new();
     let missing = subtract(&wanted, &there);
     for (line, from_m, to_m) in missing
         .iter()
-        .flat_map(|it| uncovered(graph, &carriers, it))
+        .flat_map(|it| uncovered(graph, &carriers, it, 0.0))
     {
         let known = graph.dropped.iter().filter(|it| it.line == line);
         let middle = 0.5 * (from_m + to_m);
@@ -43,15 +43,17 @@ pub(super) fn audit(graph: &Graph, input: &Arrangement) -> (Vec<Dropped>, Tally)
         });
     }
     let mut tally = displacements(graph);
-    let total = |it: &[Stretch]| it.iter().map(|(_, from, to)| to - from).sum::<f64>();
-    tally.length_m = total(&wanted);
+    tally.length_m = wanted.iter().map(|(_, from, to)| to - from).sum();
     tally.length_dropped_m = dropped.iter().map(|it| it.to_m - it.from_m).sum();
     tally.rows = rows(graph);
     (dropped, tally)
 }
 
 /// The union of the pieces, sorted; of constraint lines only.
-fn stretches<'p>(graph: &Graph, pieces: impl Iterator<Item = &'p Piece>) -> Vec<Stretch> {
+pub(super) fn stretches<'p>(
+    graph: &Graph,
+    pieces: impl Iterator<Item = &'p Piece>,
+) -> Vec<Stretch> {
     let mut all: Vec<Stretch> = pieces
         .filter(|piece| !graph.measure.is_rim(piece.line))
         .map(|it| (it.line, it.from_m.min(it.to_m), it.from_m.max(it.to_m)))
@@ -72,7 +74,7 @@ fn stretches<'p>(graph: &Graph, pieces: impl Iterator<Item = &'p Piece>) -> Vec<
 }
 
 /// What is in `wanted` and not in `there`; both sorted unions.
-fn subtract(wanted: &[Stretch], there: &[Stretch]) -> Vec<Stretch> {
+pub(super) fn subtract(wanted: &[Stretch], there: &[Stretch]) -> Vec<Stretch> {
     let mut missing = Vec::new();
     let mut k = 0;
     for &(line, from, to) in wanted {
@@ -95,7 +97,7 @@ fn subtract(wanted: &[Stretch], there: &[Stretch]) -> Vec<Stretch> {
 }
 
 /// All (line, edge) pairs, sorted.
-fn carriers(graph: &Graph) -> Vec<(LineId, u32)> {
+pub(super) fn carriers(graph: &Graph) -> Vec<(LineId, u32)> {
     let mut carriers = Vec::new();
     for edge in graph.live() {
         let pieces = &graph.edges[edge as usize].pieces;
@@ -107,27 +109,44 @@ fn carriers(graph: &Graph) -> Vec<(LineId, u32)> {
 }
 
 /// The parts of a stretch that are beyond tolerance of all edges that carry the line.
-fn uncovered(
+pub(super) fn uncovered(
     graph: &Graph,
     carriers: &[(LineId, u32)],
     &(line, from, to): &Stretch,
+    slack_m: f64,
 ) -> Vec<Stretch> {
     let own = &carriers[carriers.partition_point(|it| it.0 < line)..];
     let own = &own[..own.partition_point(|it| it.0 == line)];
-    let limit = graph.measure.tolerance_m[line as usize];
-    let is_near = |station: f64| {
+    let limit = graph.measure.tolerance_m[line as usize] + slack_m;
+    let away = |station: f64| {
         let p = graph.measure.point(line, station);
-        own.iter().any(|&(_, edge)| {
-            let (a, b) = graph.ends_m(edge);
-            to_segment(p, a, b).0 <= limit
-        })
+        (own.iter())
+            .map(|&(_, edge)| {
+                let (a, b) = graph.ends_m(edge);
+                to_segment(p, a, b).0
+            })
+            .fold(f64::INFINITY, f64::min)
     };
-    let steps = ((to - from) / (0.1 * graph.measure.size_m[line as usize])).ceil();
-    let at = |k: f64| from + (to - from) * k / steps;
+    let finest_m = 1e-4 * graph.measure.size_m[line as usize];
     let mut parts: Vec<Stretch> = Vec::new();
-    for k in 0..steps as usize {
-        let (low, high) = (at(k as f64), at(k as f64 + 1.0));
-        if is_near(low) && is_near(high) {
+    let mut open = vec![(from, to)];
+    while let Some((low, high)) = open.pop() {
+        // Distance to a set changes no faster than the way along the line.
+        let (at_low, at_high) = (away(low), away(high));
+        if 0.5 * (at_low + at_high + high - low) <= limit {
+            continue;
+        }
+        let is_beyond = at_low > limit && at_high > limit;
+        if high - low
+            > if is_beyond {
+                100.0 * finest_m
+            } else {
+                finest_m
+            }
+        {
+            let middle = 0.5 * (low + high);
+            open.push((middle, high));
+            open.push((low, middle));
             continue;
         }
         match parts.last_mut() {

@@ -33,46 +33,30 @@ const WALK_MAX: usize = 64;
 /// Loops with a perimeter above this many mesh sizes are not small.
 const LOOP_MAX: f64 = 4.0;
 
-/// Closes thin faces, the thinnest first, one step a face; returns how many steps.
-pub(super) fn collapse_thin(graph: &mut Graph, thin: &Thin) -> usize {
-    let mut faces = thin_faces(graph, thin.width);
+/// Closes thin faces at `nodes`, the thinnest first, one step a face.
+pub(super) fn collapse_thin(graph: &mut Graph, thin: &Thin, nodes: &[u32]) {
+    let mut faces = thin_faces(graph, thin.width, nodes);
     faces.sort_by(|a, b| {
         let place = |face: &Face| graph.point(face.walk[0].1);
-        a.width
-            .total_cmp(&b.width)
-            .then_with(|| place(a).cmp(&place(b)))
+        (a.width.total_cmp(&b.width)).then_with(|| place(a).cmp(&place(b)))
     });
-    let mut steps = 0;
     for face in faces {
-        let is_there = face
-            .walk
-            .iter()
-            .all(|&(edge, _)| graph.edges[edge as usize].alive);
-        if is_there && (close(graph, thin, &face) || drop_loop(graph, &face)) {
-            steps += 1;
+        let is_there = (face.walk.iter()).all(|&(edge, _)| graph.edges[edge as usize].alive);
+        if is_there && !close(graph, thin, &face) {
+            drop_loop(graph, &face);
         }
     }
-    steps
 }
 
-/// All bounded faces inside the domain that are thin.
-fn thin_faces(graph: &Graph, width: f64) -> Vec<Face> {
-    let mut next = vec![[u32::MAX; 2]; graph.edges.len()];
-    for node in 0..graph.at.len() as u32 {
-        let star = sorted_star(graph, node);
-        for (k, &edge) in star.iter().enumerate() {
-            // arriving at `node` along `edge`, the walk of the face on the left leaves clockwise
-            let leaves = star[(k + star.len() - 1) % star.len()];
-            let arrives = usize::from(graph.edges[edge as usize].ends[0] == node);
-            next[edge as usize][arrives] = leaves;
-        }
-    }
+/// All bounded faces inside the domain at `nodes` that are thin.
+fn thin_faces(graph: &Graph, width: f64, nodes: &[u32]) -> Vec<Face> {
     let mut seen = vec![[false; 2]; graph.edges.len()];
     let mut faces = Vec::new();
-    for edge in graph.live() {
-        for side in 0..2 {
+    for &node in nodes {
+        for &edge in &graph.star[node as usize] {
+            let side = usize::from(graph.edges[edge as usize].ends[0] != node);
             if !seen[edge as usize][side] {
-                faces.extend(walk(graph, &next, &mut seen, edge, side, width));
+                faces.extend(walk(graph, &mut seen, edge, side, width));
             }
         }
     }
@@ -80,14 +64,7 @@ fn thin_faces(graph: &Graph, width: f64) -> Vec<Face> {
 }
 
 /// The face on the left of `edge`, from end `side` on, if it is thin.
-fn walk(
-    graph: &Graph,
-    next: &[[u32; 2]],
-    seen: &mut [[bool; 2]],
-    edge: u32,
-    side: usize,
-    width: f64,
-) -> Option<Face> {
+fn walk(graph: &Graph, seen: &mut [[bool; 2]], edge: u32, side: usize, width: f64) -> Option<Face> {
     let (mut edge, mut side) = (edge, side);
     let (mut walk, mut area, mut length, mut size) = (Vec::new(), 0.0, 0.0, f64::INFINITY);
     let is_inside = graph.edges[edge as usize].inside[side];
@@ -100,8 +77,8 @@ fn walk(
         length += distance(a, b);
         size = size.min(it.size_m);
         walk.push((edge, it.ends[side]));
-        let leaves = next[edge as usize][side];
-        side = usize::from(graph.edges[leaves as usize].ends[0] != it.ends[1 - side]);
+        let (leaves, at) = (leaving(graph, edge, it.ends[1 - side]), it.ends[1 - side]);
+        side = usize::from(graph.edges[leaves as usize].ends[0] != at);
         edge = leaves;
     }
     let is_thin = is_inside && area > 0.0 && area / length < width * size;
@@ -109,6 +86,20 @@ fn walk(
         width: area / length / size,
         walk,
     })
+}
+
+/// The edge on which the walk of a face on the left goes on, having come to `node` along `edge`:
+/// the next one clockwise.
+fn leaving(graph: &Graph, edge: u32, node: u32) -> u32 {
+    if let [e, f] = graph.star[node as usize][..] {
+        return if e == edge { f } else { e };
+    }
+    let star = sorted_star(graph, node);
+    let at = star
+        .iter()
+        .position(|&it| it == edge)
+        .expect("an edge is in its star");
+    star[(at + star.len() - 1) % star.len()]
 }
 
 /// Joins the node and the edge of the face that are nearest to each other.

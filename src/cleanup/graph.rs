@@ -85,6 +85,8 @@ pub(super) struct Graph<'a> {
     pub(super) star: Vec<SmallVec<[u32; 4]>>,
     pub(super) edges: Vec<Edge>,
     pub(super) index: Index,
+    /// Every node that an edge was taken from or given to, in order: what later steps look at.
+    pub(super) touched: Vec<u32>,
     pub(super) changes: Vec<Change>,
     pub(super) dropped: Vec<Dropped>,
 }
@@ -97,6 +99,7 @@ impl<'a> Graph<'a> {
             star: vec![SmallVec::new(); arrangement.points.len()],
             edges: Vec::with_capacity(arrangement.edges.len() * 2),
             index: Index::new(side),
+            touched: Vec::new(),
             changes: Vec::new(),
             dropped: Vec::new(),
         };
@@ -124,6 +127,7 @@ impl<'a> Graph<'a> {
         });
         for node in ends {
             self.star[node as usize].push(id);
+            self.touched.push(node);
         }
         self.index
             .insert(id, self.at[ends[0] as usize], self.at[ends[1] as usize]);
@@ -150,6 +154,7 @@ impl<'a> Graph<'a> {
         let ends = it.ends;
         for node in ends {
             self.star[node as usize].retain(|held| *held != edge);
+            self.touched.push(node);
         }
         self.index
             .remove(edge, self.at[ends[0] as usize], self.at[ends[1] as usize]);
@@ -196,7 +201,7 @@ impl<'a> Graph<'a> {
 
     /// What becomes of a draft that falls onto the edge between `from` and `draft.to`, if there is
     /// one. `on_left`: the draft came from the left of that edge. `Err` if the domain would vanish
-    /// on both sides.
+    /// on both sides, or a hole between them: the outline may move but not go.
     pub(super) fn fuse(
         &self,
         from: u32,
@@ -214,7 +219,8 @@ impl<'a> Graph<'a> {
         };
         // both know the strip between them: it is one face
         debug_assert_eq!(between[0], between[1]);
-        if inside == [false, false] {
+        let was_rim = draft.inside[0] != draft.inside[1];
+        if inside == [false, false] || (was_rim && inside == [true, true]) {
             return Err(());
         }
         Ok(Some(Fused { edge, inside }))
@@ -273,6 +279,26 @@ impl<'a> Graph<'a> {
         let star = &self.star[node as usize];
         let sizes = star.iter().map(|&e| self.edges[e as usize].size_m);
         sizes.fold(f64::INFINITY, f64::min)
+    }
+
+    /// All nodes that have edges.
+    pub(super) fn nodes(&self) -> Vec<u32> {
+        let all = 0..self.at.len() as u32;
+        all.filter(|&node| self.degree(node) > 0).collect()
+    }
+
+    /// The nodes touched since `touched` had this length, and their neighbours.
+    pub(super) fn nodes_since(&self, mark: usize) -> Vec<u32> {
+        let mut nodes = self.touched[mark..].to_vec();
+        nodes.sort_unstable();
+        nodes.dedup();
+        for k in 0..nodes.len() {
+            nodes.extend(self.neighbours(nodes[k]));
+        }
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes.retain(|&node| self.degree(node) > 0);
+        nodes
     }
 
     /// Ids of the live edges.

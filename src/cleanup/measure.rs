@@ -1,7 +1,6 @@
 //! How far a stretch of an input line is from the edge that represents it.
 
 use crate::cleanup::Options;
-use crate::cleanup::Tolerance;
 use crate::domain::line::Domain;
 use crate::domain::line::LineId;
 use crate::domain::line::Role;
@@ -49,10 +48,7 @@ impl<'a> Measure<'a> {
             made.start.push(made.stations_m.len() as u32);
             let size = sizes.by_kind_m[usize::from(line.kind)];
             made.size_m.push(size);
-            made.tolerance_m.push(match options.tolerance {
-                Tolerance::ShareOfSize(share) => share * size,
-                Tolerance::Metres(metres) => metres,
-            });
+            made.tolerance_m.push(options.tolerance.at_m(size));
             let rim = line.role != Role::Constraint;
             made.rank.push(length + if rim { RIM_RANK } else { 0.0 });
         }
@@ -70,11 +66,6 @@ impl<'a> Measure<'a> {
     fn stations(&self, line: LineId) -> &[f64] {
         let line = line as usize;
         &self.stations_m[self.start[line] as usize..self.start[line + 1] as usize]
-    }
-
-    /// Length of `line`, metres.
-    pub(super) fn length_m(&self, line: LineId) -> f64 {
-        *self.stations(line).last().expect("a line has two points")
     }
 
     fn vertex(&self, line: LineId, k: usize) -> Xy {

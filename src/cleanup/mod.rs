@@ -1,25 +1,85 @@
 //! Arrangement + SizeWish -> Arrangement that can be meshed at that size, and the table of changes.
+//!
+//! Downstream every node becomes a mesh node and every edge at least one element side. Real line
+//! work is dirty far below the mesh size h: millimetre gaps, near duplicates, dual carriageways,
+//! slivers. This stage merges what cannot be told apart at size h and pushes the rest apart.
+//!
+//! # Promises
+//! 1. The result is planar, and no node has jumped over an edge.
+//! 2. Each stretch of a line is within the tolerance of the edge that carries it, and the edge of
+//!    the stretch (Hausdorff, measured to the input as read, never from step to step); what is
+//!    not, is in `dropped`.
+//! 3. Tags survive all merges: a merged edge carries the stretches of all its lines.
+//! 4. Holes and boundaries may move within the tolerance, but none goes; corners of the outline
+//!    stay unless an edge between two of them is too short.
+//! 5. Every edge shorter than [`SHORTEST`] h that is left is a finding with its place, and so is
+//!    every angle below [`SHARP_DEG`] degrees.
+//! 6. Same input, same bits. A tolerance of zero changes nothing.
+//!
+//! On 18 real cases the 0.1 % quantile of edge length is .30 to .36 h, that of the distance from a
+//! node to an edge that is not its own .27 to .31 h; lines move by less than .2 to .25 h on 99 % of
+//! their length (up to .38 h where lines are denser than the mesh).
+//!
+//! # Needs
+//! An arrangement that is noded and clipped ([`noding::clip()`](crate::noding::clip())).
+//!
+//! # Method
+//! One planar graph and five local operations on it, each refused unless exact predicates show that
+//! the way is clear and all stretches concerned stay within tolerance; so nothing can break.
+//! 1. `simplify`: nodes on a straight way go, the least deviation first.
+//! 2. `separate`: short edges are contracted, near misses joined, the narrowest first. Of two nodes
+//!    the less important moves (`importance`).
+//! 3. `wedges`: lines that leave a node at an acute angle share their way until they are far enough
+//!    apart.
+//! 4. `collapse`: faces that are too thin to hold elements are closed; small loops are dropped.
+//! 5. `relax`: with frozen topology, nodes and edges push each other apart.
+//! 6. `audit`: everything is measured against the input again; `thread`: the edges of each line are
+//!    made one way from end to end; `leftovers`: what could not be had is named.
+//!
+//! Steps 1 to 4 run first with half of the tolerance, then with all of it: what needs much movement
+//! is done only where nothing else helps. `operate` holds the operations, `clear` the exact test,
+//! `stations` and `measure` the book-keeping of stretches, `graph` and `index` the graph.
+//!
+//! The aims (separation of h/4, then relaxation) are those of S2Builder's snap rounding, which also
+//! merges first. Unlike it we do not snap to sites: with a veto on each operation bundles of lines
+//! do not drift, and planarity needs no argument about Voronoi cells.
+//!
+//! # Cost
+//! Near-linear: each operation looks at a few cells of a hash grid; later rounds look only at what
+//! was touched. About 50 us a segment in all. Memory: some 200 bytes an edge.
+//!
+//! # Not here
+//! Crossings (`noding`), sub-domains and curves (`partition`), chords of curves (none: nodes are
+//! mesh nodes, so tolerance is used up here).
 
 mod audit;
 pub mod changes;
+pub mod check;
 mod clear;
 mod collapse;
 mod graph;
 mod importance;
 mod index;
+mod leftovers;
 mod measure;
 mod operate;
 mod relax;
 mod separate;
 mod simplify;
 mod stations;
+mod thread;
 mod wedges;
 
 use crate::cleanup::changes::Change;
 use crate::cleanup::changes::Dropped;
 use crate::cleanup::changes::Tally;
+use crate::cleanup::collapse::Thin;
 use crate::cleanup::graph::Graph;
 use crate::cleanup::measure::Measure;
+use crate::cleanup::relax::Wanted;
+use crate::cleanup::separate::Narrow;
+use crate::cleanup::simplify::Smooth;
+use crate::cleanup::wedges::Zip;
 use crate::domain::finding::Finding;
 use crate::domain::line::Domain;
 use crate::domain::size::SizeWish;
@@ -28,10 +88,20 @@ use crate::noding::arrangement::Arrangement;
 /// How far a line may be from the mesh edges that represent it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tolerance {
-    /// A share of the wished size along the line; at most half.
+    /// A share of the wished size along the line; half is usual.
     ShareOfSize(f64),
     /// Metres, for all lines.
     Metres(f64),
+}
+
+impl Tolerance {
+    /// In metres, where the wished size is `size_m`.
+    pub fn at_m(self, size_m: f64) -> f64 {
+        match self {
+            Tolerance::ShareOfSize(share) => share * size_m,
+            Tolerance::Metres(metres) => metres,
+        }
+    }
 }
 
 /// What clean-up may do.
@@ -42,19 +112,24 @@ pub struct Options {
 }
 
 /// The line work, ready to be meshed.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Cleaned {
     /// Nodes, edges and what they represent.
     pub arrangement: Arrangement,
-    /// Stretches of lines that are not in the arrangement any more.
+    /// Stretches of lines that are not in the arrangement any more, by line and station.
     pub dropped: Vec<Dropped>,
-    /// Where the topology changed, in the order in which it happened.
+    /// Where something changed, in the order in which it happened.
     pub changes: Vec<Change>,
     /// How often and how far.
     pub tally: Tally,
-    /// What could not be had.
+    /// What is still too short or too sharp.
     pub findings: Vec<Finding>,
 }
+
+/// Edges shorter than this share of the mesh size are findings.
+pub const SHORTEST: f64 = 0.25;
+/// Angles below this are findings, degrees.
+pub const SHARP_DEG: f64 = 20.0;
 
 /// Cleans a noded and clipped arrangement up to the mesh size.
 pub fn clean(
@@ -64,95 +139,108 @@ pub fn clean(
     options: &Options,
 ) -> Cleaned {
     let measure = Measure::new(domain, sizes, options);
-    let side = 0.5 * sizes.default_m / domain.grid.cell_m;
-    let mut graph = Graph::new(&arrangement, measure, side.max(4.0));
-    let off =
-        matches!(options.tolerance, Tolerance::ShareOfSize(t) | Tolerance::Metres(t) if t <= 0.0);
-    if !off {
-        steps(&mut graph);
+    let side = (sizes.default_m / domain.grid.cell_m).max(4.0);
+    let mut graph = Graph::new(&arrangement, measure, side);
+    let is_on = options.tolerance.at_m(sizes.default_m) > 0.0;
+    if is_on {
+        make_room(&mut graph);
     }
-    let (dropped, tally) = audit::audit(&graph, &arrangement);
+    let (mut dropped, tally) = audit::audit(&graph, &arrangement);
+    let findings = leftovers::leftovers(&graph);
+    let (arrangement, torn) = match is_on {
+        true => {
+            dropped.sort_by_key(|it| it.line);
+            let limits_m = &graph.measure.tolerance_m;
+            thread::thread(domain, graph.arrangement(), &dropped, limits_m)
+        }
+        false => (arrangement, Vec::new()),
+    };
+    dropped.extend(torn);
+    dropped.sort_by(|a, b| (a.line.cmp(&b.line)).then(a.from_m.total_cmp(&b.from_m)));
     Cleaned {
-        arrangement: if off {
-            arrangement
-        } else {
-            graph.arrangement()
-        },
+        arrangement,
         dropped,
         changes: graph.changes,
         tally,
-        findings: Vec::new(),
+        findings,
     }
 }
 
-fn steps(graph: &mut Graph) {
-    let fine = simplify::Smooth {
-        deviation: 0.03,
-        at_corners: 0.03,
-        on_rim: 0.03,
-        gap: 0.0,
-        angle_deg: 0.0,
-        over_ends: false,
-    };
-    let smooth = simplify::Smooth {
-        deviation: 0.2,
-        at_corners: 0.1,
-        on_rim: 0.1,
-        gap: 0.3,
-        angle_deg: 25.0,
-        over_ends: true,
-    };
-    let narrow = |share| separate::Narrow {
-        edge: 0.25,
-        gap: 0.18,
-        end: 0.25,
-        share,
-    };
-    let zip = |share| wedges::Zip {
-        below_deg: 25.0,
-        gap: 0.35,
-        share,
-    };
-    let thin = |share| collapse::Thin {
-        width: 0.25,
-        reach: 0.5,
-        share,
-    };
-    let wanted = |share| relax::Wanted {
-        edge: 0.36,
-        gap: 0.31,
-        share,
-        rounds: 40,
-    };
-    simplify::simplify(graph, &fine);
-    // what can be had within half the tolerance, then what needs all of it
-    separate::separate(graph, &narrow(0.5));
-    simplify::simplify(graph, &smooth);
-    for share in [0.5, 0.5, 1.0, 1.0] {
-        let zipped = wedges::zip_wedges(graph, &zip(share));
-        let mut closed = 0;
-        for _ in 0..6 {
-            let steps = collapse::collapse_thin(graph, &thin(share));
-            closed += steps;
-            if steps == 0 {
+/// Removes only what no one could see.
+const FINE: Smooth = Smooth {
+    deviation: 0.03,
+    at_corners: 0.03,
+    on_rim: 0.03,
+    gap: 0.0,
+    angle_deg: 0.0,
+    over_ends: false,
+};
+/// Keeps the shape at the mesh size, and all that the other steps won.
+const SMOOTH: Smooth = Smooth {
+    deviation: 0.2,
+    at_corners: 0.1,
+    on_rim: 0.1,
+    gap: 0.3,
+    angle_deg: 25.0,
+    over_ends: true,
+};
+/// What is merged; what is a little wider, relaxation can push apart.
+const NARROW: Narrow = Narrow {
+    edge: 0.25,
+    gap: 0.18,
+    end: 0.25,
+    share: 1.0,
+};
+/// What is merged because relaxation could not push it apart.
+const STUCK: Narrow = Narrow {
+    edge: 0.3,
+    gap: 0.22,
+    end: 0.25,
+    share: 1.0,
+};
+const ZIP: Zip = Zip {
+    below_deg: 25.0,
+    gap: 0.35,
+    share: 1.0,
+};
+const THIN: Thin = Thin {
+    width: 0.25,
+    reach: 0.5,
+    share: 1.0,
+};
+/// A little more than what should hold in the end: steps are damped.
+const WANTED: Wanted = Wanted {
+    edge: 0.36,
+    gap: 0.31,
+    shares: [0.5, 0.9],
+    rounds: 40,
+};
+/// Zipping, closing and merging make work for each other; more rounds than this find hardly any.
+const ROUNDS_MAX: usize = 6;
+
+/// All steps, in order.
+fn make_room(graph: &mut Graph) {
+    simplify::simplify(graph, &FINE, &graph.nodes());
+    for share in [0.5, 1.0] {
+        let narrow = Narrow { share, ..NARROW };
+        separate::separate(graph, &narrow, &graph.nodes());
+        let mut nodes = graph.nodes();
+        for _ in 0..ROUNDS_MAX {
+            simplify::simplify(graph, &SMOOTH, &nodes);
+            let mark = graph.touched.len();
+            wedges::zip_wedges(graph, &Zip { share, ..ZIP }, &nodes);
+            collapse::collapse_thin(graph, &Thin { share, ..THIN }, &nodes);
+            nodes = graph.nodes_since(mark);
+            if nodes.is_empty() {
                 break;
             }
-        }
-        separate::separate(graph, &narrow(share));
-        simplify::simplify(graph, &smooth);
-        if zipped + closed == 0 && share == 1.0 {
-            break;
+            separate::separate(graph, &narrow, &nodes);
+            nodes = graph.nodes_since(mark);
         }
     }
-    relax::relax(graph, &wanted(0.5));
-    relax::relax(graph, &wanted(0.9));
-    let rest = separate::Narrow {
-        edge: 0.3,
-        gap: 0.22,
-        end: 0.25,
-        share: 1.0,
-    };
-    separate::separate(graph, &rest);
-    simplify::simplify(graph, &smooth);
-    relax::relax(graph, &wanted(0.9));
+    let mark = graph.touched.len();
+    relax::relax(graph, &WANTED, &graph.nodes());
+    separate::separate(graph, &STUCK, &graph.nodes());
+    simplify::simplify(graph, &SMOOTH, &graph.nodes_since(mark));
+    relax::relax(graph, &WANTED, &graph.nodes_since(mark));
 }

@@ -52,6 +52,10 @@ impl Graph<'_> {
     pub(super) fn merge(&mut self, v: u32, w: u32, share: f64) -> bool {
         let (q, p) = (self.point(v), self.point(w));
         let contracted = self.find(v, w);
+        let along_rim = contracted.is_some_and(|edge| self.edges[edge as usize].is_rim());
+        if !along_rim && self.is_on_rim(v) && self.is_on_rim(w) {
+            return false;
+        }
         let mut drafts = self.drafts(v);
         drafts.retain(|draft| draft.to != w);
         let absorbed = contracted.map_or_else(Absorbed::default, |edge| {
@@ -78,12 +82,20 @@ impl Graph<'_> {
             self.add_or_fuse(w, draft, fused);
         }
         for piece in absorbed.lost {
-            if !self.lodge(&piece, w, share) {
+            if !self.lodge(&piece, w) {
                 let reason = self.reason_for(piece.line);
                 self.drop_piece(&piece, reason);
             }
         }
         true
+    }
+
+    /// True if an edge of the outline ends at `node`. Two such nodes only become one along the
+    /// outline: elsewhere the domain would touch itself in a point, a door that is no door.
+    fn is_on_rim(&self, node: u32) -> bool {
+        let star = self.star[node as usize].iter();
+        star.into_iter()
+            .any(|&edge| self.edges[edge as usize].is_rim())
     }
 
     /// Replaces an edge by two that meet in `bend`; returns the node there.
@@ -96,6 +108,13 @@ impl Graph<'_> {
             Bend::At(p) => (p, Some(p)),
         };
         if p == a_at || p == b_at {
+            return None;
+        }
+        if let Bend::To(node) = bend
+            && self.edges[edge as usize].is_rim()
+            && self.is_on_rim(node)
+            && self.find(node, a).or(self.find(node, b)).is_none()
+        {
             return None;
         }
         let (to_a, to_b) = self.split(edge, self.measure.metres(p));
@@ -132,6 +151,13 @@ impl Graph<'_> {
                 orient(p, to, other) > 0
             })?,
         };
+        if !gains(
+            &fused,
+            [p.distance2(a_at), p.distance2(b_at)],
+            a_at.distance2(b_at),
+        ) {
+            return None;
+        }
         self.remove(edge);
         let node = match bend {
             Bend::To(node) => node,
@@ -256,5 +282,15 @@ impl Graph<'_> {
         } else {
             Reason::ShortEnd
         }
+    }
+}
+
+/// An edge that falls onto one side of its triangle only flips over to the other side. It might
+/// flip back, unless it must become shorter each time.
+fn gains(fused: &[Option<Fused>], sides2: [i64; 2], before2: i64) -> bool {
+    match fused {
+        [Some(_), None] => sides2[1] < before2,
+        [None, Some(_)] => sides2[0] < before2,
+        _ => true,
     }
 }

@@ -16,8 +16,8 @@ pub(super) struct Wanted {
     pub(super) edge: f64,
     /// Least distance of a node from an edge that is not its own.
     pub(super) gap: f64,
-    /// How much of the tolerance may be used.
-    pub(super) share: f64,
+    /// How much of the tolerance may be used: if possible the first, else the second.
+    pub(super) shares: [f64; 2],
     /// How often each node is looked at, at most.
     pub(super) rounds: usize,
 }
@@ -27,14 +27,14 @@ const STEP: f64 = 0.6;
 /// Pushes below this share of the mesh size are not made.
 const STILL: f64 = 0.002;
 
-/// Moves nodes one after the other, in rounds over those that are pushed.
-pub(super) fn relax(graph: &mut Graph, wanted: &Wanted) {
-    let mut active: Vec<u32> = (0..graph.at.len() as u32).collect();
+/// Moves `nodes` one after the other, in rounds over those that are pushed.
+pub(super) fn relax(graph: &mut Graph, wanted: &Wanted, nodes: &[u32]) {
+    let mut active = nodes.to_vec();
     let mut found = Vec::new();
     for _ in 0..wanted.rounds {
         let mut again = Vec::new();
         for &node in &active {
-            if graph.degree(node) == 0 || is_rim_corner(graph, node) {
+            if graph.degree(node) == 0 || stays(graph, wanted, node) {
                 continue;
             }
             let push = push_m(graph, wanted, node, &mut found);
@@ -53,14 +53,26 @@ pub(super) fn relax(graph: &mut Graph, wanted: &Wanted) {
     }
 }
 
+/// Corners of the outline stay, but at the ends of its short edges.
+fn stays(graph: &Graph, wanted: &Wanted, node: u32) -> bool {
+    let is_short = |&edge: &u32| {
+        let it = &graph.edges[edge as usize];
+        let (a, b) = graph.ends_m(edge);
+        it.is_rim() && distance(a, b) < wanted.edge * it.size_m
+    };
+    is_rim_corner(graph, node) && !graph.star[node as usize].iter().any(is_short)
+}
+
 /// Tries the whole step, then a half and a quarter.
 fn pushed(graph: &mut Graph, wanted: &Wanted, node: u32, push: Xy) -> bool {
     let at = graph.metres(node);
     let cell_m = graph.measure.grid().cell_m;
-    [STEP, STEP / 2.0, STEP / 4.0].iter().any(|step| {
-        let [x, y] = [at[0] + step * push[0], at[1] + step * push[1]];
-        let p = Point::new((x / cell_m).round() as i32, (y / cell_m).round() as i32);
-        graph.shift(node, p, wanted.share)
+    wanted.shares.iter().any(|&share| {
+        [STEP, STEP / 2.0, STEP / 4.0].iter().any(|step| {
+            let [x, y] = [at[0] + step * push[0], at[1] + step * push[1]];
+            let p = Point::new((x / cell_m).round() as i32, (y / cell_m).round() as i32);
+            graph.shift(node, p, share)
+        })
     })
 }
 
@@ -129,6 +141,9 @@ fn along_rim(graph: &Graph, node: u32, push: Xy) -> Xy {
     let &[e, f] = rim.as_slice() else {
         return push;
     };
+    if is_rim_corner(graph, node) {
+        return push;
+    }
     let [a, b] = [e, f].map(|edge| graph.metres(graph.edges[edge as usize].other(node)));
     let way = unit(a, b);
     let along = push[0] * way[0] + push[1] * way[1];

@@ -27,6 +27,10 @@ pub(super) struct Narrow {
     pub(super) share: f64,
 }
 
+/// Edges within tolerance of several ways around could be bent to and fro without end; this many
+/// steps at one node are enough for all honest work.
+const TRIES_MAX: u8 = 16;
+
 /// A node too near to something.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Conflict {
@@ -43,26 +47,69 @@ enum With {
     Edge(u32),
 }
 
-type Queue = BinaryHeap<Reverse<(u64, Point, u32)>>;
+/// Nodes by the narrowest of their conflicts, as far as known; ties by place.
+struct Queue {
+    heap: BinaryHeap<Reverse<(u64, Point, u32)>>,
+    /// The key under which each node waits; all other entries of it are stale.
+    key: Vec<u64>,
+}
 
-/// Closes all that is too narrow and may be closed.
-pub(super) fn separate(graph: &mut Graph, narrow: &Narrow) {
-    let mut queue = Queue::new();
-    for node in 0..graph.at.len() as u32 {
-        push(graph, narrow, node, &mut queue);
+const NOT_WAITING: u64 = u64::MAX;
+
+impl Queue {
+    fn push(&mut self, graph: &Graph, node: u32, ratio: f64) {
+        self.key.resize(graph.at.len(), NOT_WAITING);
+        // ratios are positive: their bits are in their order
+        let key = ratio.to_bits();
+        if key < self.key[node as usize] {
+            self.key[node as usize] = key;
+            self.heap.push(Reverse((key, graph.point(node), node)));
+        }
     }
-    while let Some(Reverse((key, _, node))) = queue.pop() {
+
+    fn pop(&mut self) -> Option<(f64, u32)> {
+        while let Some(Reverse((key, _, node))) = self.heap.pop() {
+            if self.key[node as usize] == key {
+                self.key[node as usize] = NOT_WAITING;
+                return Some((f64::from_bits(key), node));
+            }
+        }
+        None
+    }
+}
+
+/// Closes all that is too narrow around `nodes`, and may be closed.
+pub(super) fn separate(graph: &mut Graph, narrow: &Narrow, nodes: &[u32]) {
+    let mut queue = Queue {
+        heap: BinaryHeap::new(),
+        key: Vec::new(),
+    };
+    let is_part = nodes.len() < graph.at.len() / 2;
+    for &node in nodes {
+        if is_part {
+            push_around(graph, narrow, node, &mut queue);
+        } else {
+            push(graph, narrow, node, &mut queue);
+        }
+    }
+    let mut tries = vec![0_u8; graph.at.len()];
+    while let Some((ratio, node)) = queue.pop() {
+        if tries[node as usize] == TRIES_MAX {
+            continue;
+        }
         let conflicts = conflicts(graph, narrow, node);
         let Some(first) = conflicts.first() else {
             continue;
         };
-        let now = first.ratio.to_bits();
-        if now > key {
-            queue.push(Reverse((now, graph.point(node), node)));
+        if first.ratio > ratio {
+            queue.push(graph, node, first.ratio);
             continue;
         }
         let resolved = (conflicts.iter()).find_map(|it| resolve(graph, narrow, node, it.with));
         if let Some(centre) = resolved {
+            tries.resize(graph.at.len(), 0);
+            let tried = tries[node as usize].max(tries[centre as usize]) + 1;
+            (tries[node as usize], tries[centre as usize]) = (tried, tried);
             push_around(graph, narrow, centre, &mut queue);
         }
     }
@@ -70,35 +117,51 @@ pub(super) fn separate(graph: &mut Graph, narrow: &Narrow) {
 
 fn push(graph: &Graph, narrow: &Narrow, node: u32, queue: &mut Queue) {
     if let Some(first) = conflicts(graph, narrow, node).first() {
-        queue.push(Reverse((first.ratio.to_bits(), graph.point(node), node)));
+        queue.push(graph, node, first.ratio);
     }
 }
 
-/// Queues all nodes that a change at `centre` may have brought too near to something.
+/// Queues `centre`, and all nodes that its edges are too near to.
 fn push_around(graph: &Graph, narrow: &Narrow, centre: u32, queue: &mut Queue) {
     push(graph, narrow, centre, queue);
     let mut found = Vec::new();
+    let mut nodes = Vec::new();
     for &edge in &graph.star[centre as usize] {
-        let ends = graph.edges[edge as usize].ends;
-        let [a, b] = ends.map(|node| graph.point(node));
+        let it = &graph.edges[edge as usize];
+        let [a, b] = it.ends.map(|node| graph.point(node));
         let (a_m, b_m) = graph.ends_m(edge);
-        let reach = narrow.gap.max(narrow.end) * graph.edges[edge as usize].size_m;
-        graph
-            .index
-            .near(a, b, reach / graph.measure.grid().cell_m, &mut found);
-        let mut nodes: Vec<u32> = Vec::with_capacity(found.len());
-        for &near in &found {
-            let ends = graph.edges[near as usize].ends;
-            let close = |&node: &u32| to_segment(graph.metres(node), a_m, b_m).0 < reach;
-            nodes.extend(ends.into_iter().filter(close));
+        let ratio = distance(a_m, b_m) / (narrow.edge * it.size_m);
+        if ratio < 1.0 {
+            queue.push(graph, it.other(centre), ratio);
         }
-        nodes.extend(ends);
+        let reach = narrow.gap.max(narrow.end) * it.size_m;
+        (graph.index).near(a, b, reach / graph.measure.grid().cell_m, &mut found);
+        nodes.clear();
+        nodes.extend(
+            found
+                .iter()
+                .flat_map(|&near| graph.edges[near as usize].ends),
+        );
         nodes.sort_unstable();
         nodes.dedup();
-        for node in nodes {
-            push(graph, narrow, node, queue);
+        for &node in &nodes {
+            if to_segment(graph.metres(node), a_m, b_m).0 < reach
+                && let Some(ratio) = gap_ratio(graph, narrow, node, edge)
+            {
+                queue.push(graph, node, ratio);
+            }
         }
     }
+}
+
+/// How narrow the gap between a node and an edge that is not its own is, if it is too narrow.
+fn gap_ratio(graph: &Graph, narrow: &Narrow, node: u32, edge: u32) -> Option<f64> {
+    let is_end = graph.degree(node) == 1;
+    let share = if is_end { narrow.end } else { narrow.gap };
+    let limit = share * graph.size_at_m(node).min(graph.edges[edge as usize].size_m);
+    gap_m(graph, node, edge)
+        .map(|gap| gap / limit)
+        .filter(|&ratio| ratio < 1.0)
 }
 
 /// All conflicts of a node, the narrowest first.
@@ -120,22 +183,14 @@ fn conflicts(graph: &Graph, narrow: &Narrow, node: u32) -> Vec<Conflict> {
             });
         }
     }
-    let share = if graph.degree(node) == 1 {
-        narrow.end
-    } else {
-        narrow.gap
-    };
     let mut found = Vec::new();
     let p = graph.point(node);
-    let reach = share * size / graph.measure.grid().cell_m;
+    let reach = narrow.gap.max(narrow.end) * size / graph.measure.grid().cell_m;
     graph.index.near(p, p, reach, &mut found);
     for edge in found {
-        let limit = share * size.min(graph.edges[edge as usize].size_m);
-        if let Some(gap) = gap_m(graph, node, edge).filter(|&gap| gap < limit) {
-            conflicts.push(Conflict {
-                ratio: gap / limit,
-                with: With::Edge(edge),
-            });
+        if let Some(ratio) = gap_ratio(graph, narrow, node, edge) {
+            let with = With::Edge(edge);
+            conflicts.push(Conflict { ratio, with });
         }
     }
     conflicts.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
@@ -187,7 +242,8 @@ pub(super) fn unite(
     } else {
         (u, v)
     };
-    if is_rim_corner(graph, give) {
+    // a corner of the outline only gives way to another one
+    if is_rim_corner(graph, give) && !is_rim_corner(graph, keep) {
         return None;
     }
     let (at, moved) = (
@@ -198,7 +254,7 @@ pub(super) fn unite(
         graph.note(what, at, moved);
         return Some(keep);
     }
-    if is_rim_corner(graph, keep) {
+    if is_rim_corner(graph, keep) && !is_rim_corner(graph, give) {
         return None;
     }
     if graph.merge(keep, give, share) {

@@ -28,10 +28,10 @@ pub(super) struct Smooth {
 
 const CORNER_DEG: f64 = 30.0;
 
-/// Removes all nodes of degree two that `smooth` allows.
-pub(super) fn simplify(graph: &mut Graph, smooth: &Smooth) {
+/// Removes all nodes of degree two that `smooth` allows, of these and what they lead to.
+pub(super) fn simplify(graph: &mut Graph, smooth: &Smooth, nodes: &[u32]) {
     let mut queue = BinaryHeap::new();
-    for node in 0..graph.at.len() as u32 {
+    for &node in nodes {
         push(graph, smooth, node, &mut queue);
     }
     while let Some(Reverse((key, _, _, node))) = queue.pop() {
@@ -89,11 +89,12 @@ fn deviation(graph: &Graph, smooth: &Smooth, node: u32) -> Option<f64> {
     let (p, q) = (graph.metres(a), graph.metres(b));
     let own = to_segment(graph.metres(node), p, q).0;
     let turns = turn_deg(graph, node, |_| true).is_some_and(|turn| turn > CORNER_DEG);
+    let is_rim = star.iter().any(|&edge| graph.edges[edge as usize].is_rim());
     let limit = size
-        * if turns {
-            smooth.at_corners
-        } else {
-            smooth.deviation
+        * match (is_rim, turns) {
+            (true, _) => smooth.on_rim,
+            (false, true) => smooth.at_corners,
+            (false, false) => smooth.deviation,
         };
     if own > limit {
         return None;

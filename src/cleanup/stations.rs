@@ -104,9 +104,9 @@ impl Graph<'_> {
     /// Finds a home for a stretch that lost its edge: the edge at `w` that it fits best. A line
     /// much shorter than the mesh size lives on with its neighbours this way, if they are not much
     /// longer themselves. False if there is none within tolerance.
-    pub(super) fn lodge(&mut self, lost: &Piece, w: u32, share: f64) -> bool {
+    pub(super) fn lodge(&mut self, lost: &Piece, w: u32) -> bool {
         let mut best: Option<(f64, u32, Piece)> = None;
-        let limit = share * self.measure.tolerance_m[lost.line as usize];
+        let limit = self.measure.tolerance_m[lost.line as usize];
         for &edge in &self.star[w as usize] {
             let (a, b) = self.ends_m(edge);
             for piece in [*lost, turned(lost)] {

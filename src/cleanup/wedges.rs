@@ -22,38 +22,35 @@ pub(super) struct Zip {
 }
 
 /// Two edges `hub a` and `hub b` with nothing in between.
-struct Wedge {
-    angle_deg: f64,
-    hub: u32,
-    a: u32,
-    b: u32,
+pub(super) struct Wedge {
+    pub(super) angle_deg: f64,
+    pub(super) hub: u32,
+    pub(super) a: u32,
+    pub(super) b: u32,
 }
 
-/// Zips all wedges, the sharpest first; returns how many.
-pub(super) fn zip_wedges(graph: &mut Graph, zip: &Zip) -> usize {
-    let mut wedges = wedges(graph, zip.below_deg);
+/// Zips the wedges at `nodes`, the sharpest first.
+pub(super) fn zip_wedges(graph: &mut Graph, zip: &Zip, nodes: &[u32]) {
+    let mut wedges = wedges(graph, zip.below_deg, nodes);
     wedges.sort_by(|u, v| {
         (u.angle_deg.total_cmp(&v.angle_deg))
             .then_with(|| graph.point(u.hub).cmp(&graph.point(v.hub)))
             .then_with(|| graph.point(u.a).cmp(&graph.point(v.a)))
     });
-    let mut zipped = 0;
     for wedge in wedges {
         let is_there = [wedge.a, wedge.b]
             .iter()
             .all(|&it| graph.find(wedge.hub, it).is_some());
         if is_there && zip_one(graph, zip, &wedge) {
             graph.note("zipped", graph.point(wedge.hub), 0.0);
-            zipped += 1;
         }
     }
-    zipped
 }
 
 /// All wedges inside the domain below an angle, unsorted.
-fn wedges(graph: &Graph, below_deg: f64) -> Vec<Wedge> {
+pub(super) fn wedges(graph: &Graph, below_deg: f64, nodes: &[u32]) -> Vec<Wedge> {
     let mut wedges = Vec::new();
-    for hub in 0..graph.at.len() as u32 {
+    for &hub in nodes {
         let star = sorted_star(graph, hub);
         if star.len() < 2 {
             continue;
@@ -104,102 +101,104 @@ pub(super) fn angle_deg(graph: &Graph, hub: u32, a: u32, b: u32) -> f64 {
 }
 
 fn zip_one(graph: &mut Graph, zip: &Zip, wedge: &Wedge) -> bool {
-    let Wedge { hub, a, b, .. } = *wedge;
-    let half = (angle_deg(graph, hub, a, b) / 2.0).to_radians();
-    let size = graph.size_at_m(hub);
-    let gap = zip.gap * size;
-    let (o, a_at, b_at) = (graph.metres(hub), graph.metres(a), graph.metres(b));
-    let (la, lb) = (distance(o, a_at), distance(o, b_at));
-    let (short, long) = if la <= lb { (a, b) } else { (b, a) };
-    if la.min(lb) * (2.0 * half).sin() < gap {
-        let edge = graph.find(hub, long).expect("the wedge was there");
-        return join(graph, short, edge, 0.25, zip.share).is_some();
-    }
-    let reach = gap / (2.0 * half.sin());
-    let (u, v) = (towards(o, a_at, 1.0 / la), towards(o, b_at, 1.0 / lb));
-    // the outline stays: the other line comes to it
-    let is_rim = [a, b].map(|it| {
-        graph
-            .find(hub, it)
-            .is_some_and(|e| graph.edges[e as usize].is_rim())
-    });
-    let way = match is_rim {
-        [true, false] => u,
-        [false, true] => v,
-        [true, true] => return false,
-        [false, false] => [(u[0] + v[0]) / 2.0, (u[1] + v[1]) / 2.0],
+    let gap = zip.gap * graph.size_at_m(wedge.hub);
+    let half = (wedge.angle_deg / 2.0).to_radians();
+    let (a, b) = (
+        Arm::new(graph, wedge.hub, wedge.a),
+        Arm::new(graph, wedge.hub, wedge.b),
+    );
+    let (short, long) = if a.length_m <= b.length_m {
+        (&a, &b)
+    } else {
+        (&b, &a)
     };
-    let parting = [o[0] + way[0] * reach, o[1] + way[1] * reach];
+    if short.length_m * (2.0 * half).sin() < gap {
+        let edge = graph.find(wedge.hub, long.end).expect("an arm is there");
+        return join(graph, short.end, edge, 0.25, zip.share).is_some();
+    }
+    // the outline stays: the other line comes to it
+    let (first, second) = if b.is_rim { (b, a) } else { (a, b) };
+    if second.is_rim {
+        return false;
+    }
+    let way = if first.is_rim {
+        first.way
+    } else {
+        [
+            (first.way[0] + second.way[0]) / 2.0,
+            (first.way[1] + second.way[1]) / 2.0,
+        ]
+    };
+    let reach = gap / (2.0 * half.sin());
     part(
         graph,
         zip,
-        wedge,
-        parting,
-        [u, v],
-        [la, lb],
-        reach + gap,
-        gap,
+        wedge.hub,
+        [first, second],
+        way,
+        [reach, reach + gap],
     )
 }
 
-fn towards(o: Xy, a: Xy, scale: f64) -> Xy {
-    [(a[0] - o[0]) * scale, (a[1] - o[1]) * scale]
+/// One side of a wedge.
+struct Arm {
+    end: u32,
+    is_rim: bool,
+    length_m: f64,
+    /// Its direction, of length one.
+    way: Xy,
 }
 
-/// Splits both arms at `at_m` from the hub where they are long enough, then leads the inner parts
-/// over `parting`.
-#[allow(clippy::too_many_arguments)]
-fn part(
-    graph: &mut Graph,
-    zip: &Zip,
-    wedge: &Wedge,
-    parting: Xy,
-    along: [Xy; 2],
-    length: [f64; 2],
-    at_m: f64,
-    gap: f64,
-) -> bool {
-    let o = graph.metres(wedge.hub);
-    let mut arms = [wedge.a, wedge.b];
+impl Arm {
+    fn new(graph: &Graph, hub: u32, end: u32) -> Arm {
+        let (o, a) = (graph.metres(hub), graph.metres(end));
+        let length_m = distance(o, a);
+        let edge = graph.find(hub, end).expect("an arm is an edge");
+        Arm {
+            end,
+            is_rim: graph.edges[edge as usize].is_rim(),
+            length_m,
+            way: [(a[0] - o[0]) / length_m, (a[1] - o[1]) / length_m],
+        }
+    }
+}
+
+/// Splits both arms at `at_m[1]` from the hub where they are long enough, then leads their inner
+/// parts over the place `at_m[0]` along `way`.
+fn part(graph: &mut Graph, zip: &Zip, hub: u32, arms: [Arm; 2], way: Xy, at_m: [f64; 2]) -> bool {
+    let o = graph.metres(hub);
+    let place = |graph: &Graph, way: Xy, at: f64| {
+        let cell_m = graph.measure.grid().cell_m;
+        let [x, y] = [0, 1].map(|k| ((o[k] + way[k] * at) / cell_m).round() as i32);
+        Point::new(x, y)
+    };
     let mut added = Vec::new();
-    for k in 0..2 {
-        if length[k] > at_m + gap {
-            let edge = graph.find(wedge.hub, arms[k]).expect("an arm");
-            let p = [o[0] + along[k][0] * at_m, o[1] + along[k][1] * at_m];
-            let Some(node) = graph.bend(edge, Bend::At(cell(graph, p)), zip.share) else {
-                continue;
-            };
-            added.push(node);
-            arms[k] = node;
-        }
-    }
-    if graph
-        .find(wedge.hub, arms[1])
-        .is_some_and(|e| graph.edges[e as usize].is_rim())
-    {
-        arms.swap(0, 1);
-    }
-    let first = graph.find(wedge.hub, arms[0]).expect("an arm");
-    let middle = graph.bend(first, Bend::At(cell(graph, parting)), zip.share);
-    let done = middle.is_some_and(|node| {
-        let second = graph.find(wedge.hub, arms[1]).expect("an arm");
-        graph.bend(second, Bend::To(node), zip.share).is_some() || {
-            graph.straighten(node, f64::INFINITY, false);
-            false
-        }
+    let ends = arms.map(|arm| {
+        let edge = graph.find(hub, arm.end).expect("an arm is an edge");
+        let p = place(graph, arm.way, at_m[1]);
+        // the rest of the arm should not be shorter than the way between the two places
+        let is_long = arm.length_m > 2.0 * at_m[1] - at_m[0];
+        let node = is_long
+            .then(|| graph.bend(edge, Bend::At(p), zip.share))
+            .flatten();
+        added.extend(node);
+        node.unwrap_or(arm.end)
     });
+    let first = graph.find(hub, ends[0]).expect("an arm is an edge");
+    let parting = place(graph, way, at_m[0]);
+    let done = graph
+        .bend(first, Bend::At(parting), zip.share)
+        .is_some_and(|node| {
+            let second = graph.find(hub, ends[1]).expect("an arm is an edge");
+            graph.bend(second, Bend::To(node), zip.share).is_some() || {
+                graph.straighten(node, f64::INFINITY, false);
+                false
+            }
+        });
     if !done {
         for node in added {
             graph.straighten(node, f64::INFINITY, false);
         }
     }
     done
-}
-
-fn cell(graph: &Graph, p: Xy) -> Point {
-    let cell_m = graph.measure.grid().cell_m;
-    Point::new(
-        (p[0] / cell_m).round() as i32,
-        (p[1] / cell_m).round() as i32,
-    )
 }

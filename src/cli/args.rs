@@ -130,4 +130,7 @@ pub struct BuildArgs {
     /// Replace an existing output.
     #[arg(long)]
     pub force: bool,
+    /// Go on where an earlier run of the same job was stopped (crash, kill, full disk).
+    #[arg(long)]
+    pub resume: bool,
 }

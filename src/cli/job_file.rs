@@ -73,6 +73,7 @@ pub fn job(args: &BuildArgs) -> Result<Job, String> {
             .unwrap_or(SEAM_BUDGET_QUADS),
         threads: args.threads.or(file.threads).unwrap_or(0),
         force: args.force,
+        resume: args.resume,
     };
     validate(&job)?;
     Ok(job)

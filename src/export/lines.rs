@@ -24,7 +24,7 @@ pub(crate) enum Along {
 
 pub(crate) fn write(mesh: &Mesh, to: &mut Destination, along: Along) -> Result<Stats, Error> {
     let (frame, lines) = (mesh.frame(), mesh.lines());
-    let edges = LineEdges::of(frame, lines.lines());
+    let edges = LineEdges::of(mesh);
     let draw = Drawing {
         frame,
         lines,

@@ -11,7 +11,8 @@
 //!
 //! # Method
 //! One file of code a format, each streamed from the mapped chunks:
-//! - `ugrid`: UGRID-1.0 in classic NetCDF (`classic` writes its header), for D-Flow FM, QGIS,
+//! - `ugrid`: UGRID-1.0 in classic NetCDF (`convention` says what is in it, `classic` encodes that,
+//!   `edges` lists the edges with the line along each), for D-Flow FM, QGIS,
 //!   xugrid. Classic, because readers misread some UGRID files in HDF5; CDF-2 while every variable
 //!   stays below 4 GiB, CDF-5 beyond.
 //! - `sms`: .2dm for SMS, TUFLOW FV, BASEMENT, with a node string for each chain of each line.
@@ -30,7 +31,9 @@ pub mod error;
 
 mod changes;
 mod classic;
+mod convention;
 mod destination;
+mod edges;
 mod lines;
 mod sms;
 mod ugrid;

@@ -43,8 +43,8 @@ pub(crate) fn write(mesh: &Mesh, to: &mut Destination) -> Result<Stats, Error> {
     let mut node = 0_u64;
     let mut place = |file: &mut dyn Write, [x, y]: [f64; 2]| {
         node += 1;
-        // Micrometres: a thousandth of the grid that the line work was rounded to.
-        writeln!(file, "ND {node} {:.6} {:.6} 0.0", x + ox, y + oy)
+        // The shortest numbers that read back as the same bits: rounded, thin cells could fold.
+        writeln!(file, "ND {node} {:?} {:?} 0.0", x + ox, y + oy)
     };
     to.write(|file| mesh.frame().nodes.iter().try_for_each(|&p| place(file, p)))?;
     for number in 0..mesh.chunks() {
@@ -64,7 +64,7 @@ pub(crate) fn write(mesh: &Mesh, to: &mut Destination) -> Result<Stats, Error> {
 /// Node strings in the order of the lines. Their number says how many there are.
 fn strings(mesh: &Mesh, to: &mut Destination) -> Result<u64, Error> {
     let lines = mesh.lines();
-    let edges = LineEdges::of(mesh.frame(), lines.lines());
+    let edges = LineEdges::of(mesh);
     let mut number = 0;
     for line in (0..lines.lines()).filter(|&line| lines.role[line] == 0) {
         for chain in edges.chains_of(line) {

@@ -1,21 +1,17 @@
-//! UGRID-1.0 in classic NetCDF: nodes, faces, the sub-domain and method of each face.
+//! UGRID-1.0 in classic NetCDF: nodes, edges with the line that runs along them, faces with their
+//! sub-domain and method.
 
 use crate::chunk::reader::Mesh;
-use crate::chunk::views::IndexView;
+use crate::chunk::views::PatchView;
 use crate::export::Stats;
-use crate::export::classic::Header;
-use crate::export::classic::Type;
-use crate::export::classic::Value;
-use crate::export::classic::Variable;
-use crate::export::classic::text;
+use crate::export::convention;
 use crate::export::destination::Destination;
+use crate::export::edges::Edges;
 use crate::export::error::Error;
 use crate::geometry::point::Xy;
+use std::fs::File;
+use std::io::BufWriter;
 use std::io::Write;
-
-const NODES: usize = 0;
-const FACES: usize = 1;
-const CORNERS: usize = 2;
 
 pub(crate) fn write(mesh: &Mesh, to: &Destination) -> Result<Stats, Error> {
     let index = mesh.index();
@@ -26,56 +22,31 @@ pub(crate) fn write(mesh: &Mesh, to: &Destination) -> Result<Stats, Error> {
             found: index.nodes,
         });
     }
-    let (header, places) = header(&index).encode();
-    // All variables are written side by side, so that each chunk is mapped once.
-    let mut sections = Vec::new();
-    for &place in [0].iter().chain(&places) {
-        sections.push(to.section(place)?);
-    }
-    let [head, topology, projection, x, y, faces, subdomains, methods] = &mut sections[..] else {
-        unreachable!("one section for the header and one a variable");
-    };
-    let io = |e| to.refused(e);
-    head.write_all(&header).map_err(io)?;
-    topology.write_all(&[0; 4]).map_err(io)?;
-    projection.write_all(&[0; 4]).map_err(io)?;
-    let origin_m = index.grid.origin_m;
-    let mut places = Places {
-        bytes: Vec::new(),
-        origin_m,
-    };
-    x.write_all(places.axis(mesh.frame().nodes, 0))
-        .map_err(io)?;
-    y.write_all(places.axis(mesh.frame().nodes, 1))
-        .map_err(io)?;
-    let mut bytes = Vec::new();
+    let mut edges = Edges::of(mesh);
+    let (header, places) = convention::header(&index, edges.total).encode();
+    let mut out = Sections::open(to, &header, &places)?;
+    out.put(convention::MESH, &[0; 4])?;
+    out.put(convention::PROJECTION, &[0; 4])?;
+    out.put_nodes(mesh.frame().nodes, index.grid.origin_m)?;
+    let (ends, sources) = edges.of_curves();
+    out.put(convention::EDGE_NODES, &ends)?;
+    out.put(convention::EDGE_SOURCE, &sources)?;
     for number in 0..mesh.chunks() {
         let chunk = mesh.chunk(number)?;
         for (row, patch) in (chunk.first_patch()..).zip(chunk.view().patches()) {
-            x.write_all(places.axis(patch.interior, 0)).map_err(io)?;
-            y.write_all(places.axis(patch.interior, 1)).map_err(io)?;
             let base = index.patch_node_base[row];
-            bytes.clear();
-            for &corner in patch.quads.as_flattened() {
-                let node = patch.global(corner, base) + 1;
-                bytes.extend_from_slice(&(node as i32).to_be_bytes());
-            }
-            faces.write_all(&bytes).map_err(io)?;
-            bytes.clear();
-            for _ in patch.quads {
-                bytes.extend_from_slice(&(patch.subdomain as i32).to_be_bytes());
-            }
-            subdomains.write_all(&bytes).map_err(io)?;
-            bytes.clear();
-            bytes.resize(patch.quads.len(), patch.method);
-            methods.write_all(&bytes).map_err(io)?;
+            out.put_nodes(patch.interior, index.grid.origin_m)?;
+            out.put_faces(&patch, base)?;
+            let ends = edges.inside(&patch, base);
+            out.put(convention::EDGE_NODES, ends)?;
+            // -1 for each: no line runs inside a patch.
+            out.put(convention::EDGE_SOURCE, &vec![0xff; ends.len() / 2])?;
         }
     }
+    edges.expect_all(mesh)?;
     let padding = (index.quads.next_multiple_of(4) - index.quads) as usize;
-    methods.write_all(&[0; 3][..padding]).map_err(io)?;
-    for section in &mut sections {
-        section.flush().map_err(io)?;
-    }
+    out.put(convention::METHOD, &[0; 3][..padding])?;
+    out.finish()?;
     Ok(Stats {
         nodes: index.nodes,
         quads: index.quads,
@@ -83,155 +54,76 @@ pub(crate) fn write(mesh: &Mesh, to: &Destination) -> Result<Stats, Error> {
     })
 }
 
-/// Coordinates as the file wants them: one axis, projected, big-endian.
-struct Places {
+/// A writer for each variable, so that each chunk is mapped once. Values are big-endian.
+struct Sections<'a> {
+    to: &'a Destination,
+    variables: Vec<BufWriter<File>>,
     bytes: Vec<u8>,
-    origin_m: Xy,
 }
 
-impl Places {
-    fn axis(&mut self, places: &[Xy], axis: usize) -> &[u8] {
-        self.bytes.clear();
-        for place in places {
-            let value = place[axis] + self.origin_m[axis];
-            self.bytes.extend_from_slice(&value.to_be_bytes());
+impl<'a> Sections<'a> {
+    fn open(to: &'a Destination, header: &[u8], places: &[u64]) -> Result<Sections<'a>, Error> {
+        let mut head = to.section(0)?;
+        head.write_all(header).map_err(|e| to.refused(e))?;
+        head.flush().map_err(|e| to.refused(e))?;
+        let mut variables = Vec::new();
+        for &place in places {
+            variables.push(to.section(place)?);
         }
-        &self.bytes
+        Ok(Sections {
+            to,
+            variables,
+            bytes: Vec::new(),
+        })
     }
-}
 
-fn header(index: &IndexView) -> Header {
-    let mut topology = Variable {
-        name: "mesh2d",
-        kind: Type::Int,
-        dimensions: vec![],
-        attributes: vec![
-            text("cf_role", "mesh_topology"),
-            text("long_name", "Topology of the quadrilateral mesh"),
-        ],
-    };
-    topology
-        .attributes
-        .push(("topology_dimension", Value::Int(2)));
-    for (name, value) in [
-        ("node_coordinates", "mesh2d_node_x mesh2d_node_y"),
-        ("face_node_connectivity", "mesh2d_face_nodes"),
-        ("face_dimension", "mesh2d_nFaces"),
-        ("max_face_nodes_dimension", "mesh2d_nMax_face_nodes"),
-    ] {
-        topology.attributes.push(text(name, value));
+    fn put(&mut self, variable: usize, bytes: &[u8]) -> Result<(), Error> {
+        let section = &mut self.variables[variable];
+        section.write_all(bytes).map_err(|e| self.to.refused(e))
     }
-    Header {
-        dimensions: vec![
-            ("mesh2d_nNodes", index.nodes),
-            ("mesh2d_nFaces", index.quads),
-            ("mesh2d_nMax_face_nodes", 4),
-        ],
-        attributes: vec![
-            text("Conventions", "CF-1.8 UGRID-1.0"),
-            text("title", "All-quadrilateral flood mesh"),
-            text("source", &format!("polder {}", index.polder)),
-        ],
-        variables: vec![
-            topology,
-            projection(index),
-            axis(
-                "mesh2d_node_x",
-                "projection_x_coordinate",
-                "x of mesh nodes",
-            ),
-            axis(
-                "mesh2d_node_y",
-                "projection_y_coordinate",
-                "y of mesh nodes",
-            ),
-            face_nodes(),
-            on_faces(
-                "mesh2d_subdomain",
-                Type::Int,
-                vec![text(
-                    "long_name",
-                    "sub-domain: the face of the line work that holds the cell",
-                )],
-            ),
-            on_faces(
-                "mesh2d_method",
-                Type::Byte,
-                vec![
-                    text("long_name", "how the sub-domain was meshed"),
-                    ("flag_values", Value::Bytes(vec![0, 1, 2, 3, 4])),
-                    text(
-                        "flag_meanings",
-                        "mapping looping strip indirect last_resort",
-                    ),
-                ],
-            ),
-        ],
-    }
-}
 
-fn projection(index: &IndexView) -> Variable {
-    let epsg = index.epsg.unwrap_or(0);
-    let mut attributes = vec![
-        text("name", "projected"),
-        ("epsg", Value::Int(epsg as i32)),
-        text("grid_mapping_name", "Unknown projected"),
-        ("semi_major_axis", Value::Double(6_378_137.0)),
-        ("inverse_flattening", Value::Double(298.257_223_563)),
-    ];
-    if index.epsg.is_some() {
-        // Both spellings are in use: Deltares writes the first, GDAL reads the second.
-        attributes.push(text("EPSG_code", &format!("EPSG:{epsg}")));
-        attributes.push(text("spatial_ref", &format!("EPSG:{epsg}")));
+    /// Puts values one after the other.
+    fn put_all<const N: usize>(
+        &mut self,
+        variable: usize,
+        values: impl Iterator<Item = [u8; N]>,
+    ) -> Result<(), Error> {
+        let mut bytes = std::mem::take(&mut self.bytes);
+        bytes.clear();
+        values.for_each(|value| bytes.extend_from_slice(&value));
+        let put = self.put(variable, &bytes);
+        self.bytes = bytes;
+        put
     }
-    Variable {
-        name: "projected_coordinate_system",
-        kind: Type::Int,
-        dimensions: vec![],
-        attributes,
-    }
-}
 
-fn axis(name: &'static str, standard: &str, long: &str) -> Variable {
-    Variable {
-        name,
-        kind: Type::Double,
-        dimensions: vec![NODES],
-        attributes: vec![
-            text("units", "m"),
-            text("standard_name", standard),
-            text("long_name", long),
-            text("mesh", "mesh2d"),
-            text("location", "node"),
-            text("grid_mapping", "projected_coordinate_system"),
-        ],
+    /// Nodes as the file wants them: axis by axis, projected.
+    fn put_nodes(&mut self, places: &[Xy], origin_m: Xy) -> Result<(), Error> {
+        for (axis, variable) in [convention::NODE_X, convention::NODE_Y]
+            .into_iter()
+            .enumerate()
+        {
+            let values = places
+                .iter()
+                .map(|p| (p[axis] + origin_m[axis]).to_be_bytes());
+            self.put_all(variable, values)?;
+        }
+        Ok(())
     }
-}
 
-fn face_nodes() -> Variable {
-    Variable {
-        name: "mesh2d_face_nodes",
-        kind: Type::Int,
-        dimensions: vec![FACES, CORNERS],
-        attributes: vec![
-            text("cf_role", "face_node_connectivity"),
-            text("long_name", "nodes of each face, counter-clockwise"),
-            ("start_index", Value::Int(1)),
-        ],
+    fn put_faces(&mut self, patch: &PatchView, base: u64) -> Result<(), Error> {
+        let corners = patch.quads.as_flattened().iter();
+        let number = |&node: &u32| (patch.global(node, base) as i32 + 1).to_be_bytes();
+        self.put_all(convention::FACE_NODES, corners.map(number))?;
+        let subdomain = (patch.subdomain as i32).to_be_bytes();
+        self.put_all(convention::SUBDOMAIN, patch.quads.iter().map(|_| subdomain))?;
+        self.put_all(
+            convention::METHOD,
+            patch.quads.iter().map(|_| [patch.method]),
+        )
     }
-}
 
-fn on_faces(
-    name: &'static str,
-    kind: Type,
-    mut attributes: Vec<(&'static str, Value)>,
-) -> Variable {
-    attributes.push(text("mesh", "mesh2d"));
-    attributes.push(text("location", "face"));
-    Variable {
-        name,
-        kind,
-        dimensions: vec![FACES],
-        attributes,
+    fn finish(&mut self) -> Result<(), Error> {
+        let flush = self.variables.iter_mut().try_for_each(BufWriter::flush);
+        flush.map_err(|e| self.to.refused(e))
     }
 }

@@ -13,8 +13,10 @@ use crate::meshing::visits::Visits;
 
 /// What a radian of angle error costs, in lengths of a bridge over spacing.
 const ANGLE_COST: f64 = 1.0;
+/// Bridges that are compared with their angles, the shortest over spacing.
+const SHORTEST: usize = 200;
 
-/// A possible bridge, cheapest first in order of the fields.
+/// A possible bridge.
 struct Bridge {
     cost: f64,
     /// Entry of the loop.
@@ -41,23 +43,50 @@ pub(crate) fn merge(sheet: &mut Sheet, visits: &Visits, size_m: f64) -> Option<V
     Some(merged.ids)
 }
 
-/// The cheapest visible bridge from `merged` to one of the `inner` walks.
+/// The cheapest visible bridge from `merged` to one of the `inner` walks: among the shortest ones,
+/// and only if none of those is visible among all.
 fn nearest(merged: &Contour, inner: &[Contour]) -> Option<Bridge> {
-    let mut bridges = Vec::new();
+    let mut pairs = pairs(merged, inner);
+    if pairs.len() > SHORTEST {
+        pairs.select_nth_unstable_by(SHORTEST, |p, q| {
+            let order = p.cost.total_cmp(&q.cost);
+            order.then((p.from, p.walk, p.to).cmp(&(q.from, q.walk, q.to)))
+        });
+        let rest = pairs.split_off(SHORTEST);
+        let found = cheapest(merged, inner, pairs);
+        return found.or_else(|| cheapest(merged, inner, rest));
+    }
+    cheapest(merged, inner, pairs)
+}
+
+/// All pairs of entries, their cost just the length over the spacing.
+fn pairs(merged: &Contour, inner: &[Contour]) -> Vec<Bridge> {
+    let mut pairs = Vec::new();
     for (walk, contour) in inner.iter().enumerate() {
         for from in 0..merged.len() {
             for to in 0..contour.len() {
-                if let Some(cost) = cost(merged, from, contour, to) {
-                    bridges.push(Bridge {
-                        cost,
-                        from,
-                        walk,
-                        to,
-                    });
-                }
+                let (a, b) = (merged.at[from], contour.at[to]);
+                let spacing_m = 0.5 * (merged.spacing_m[from] + contour.spacing_m[to]);
+                let length2 = (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2);
+                pairs.push(Bridge {
+                    cost: length2.sqrt() / spacing_m,
+                    from,
+                    walk,
+                    to,
+                });
             }
         }
     }
+    pairs
+}
+
+/// The cheapest visible one of `bridges`, with the angles at its ends.
+fn cheapest(merged: &Contour, inner: &[Contour], mut bridges: Vec<Bridge>) -> Option<Bridge> {
+    bridges.retain_mut(|bridge| {
+        let angles = angle_error(merged, bridge.from, &inner[bridge.walk], bridge.to);
+        bridge.cost += ANGLE_COST * angles.unwrap_or(0.0);
+        angles.is_some()
+    });
     bridges.sort_by(|p, q| {
         let order = p.cost.total_cmp(&q.cost);
         order.then((p.from, p.walk, p.to).cmp(&(q.from, q.walk, q.to)))
@@ -69,8 +98,8 @@ fn nearest(merged: &Contour, inner: &[Contour]) -> Option<Bridge> {
     })
 }
 
-/// Length over spacing and angle errors; `None` if the bridge does not leave into the area.
-fn cost(merged: &Contour, from: usize, contour: &Contour, to: usize) -> Option<f64> {
+/// Error of the angles at both ends, radians; `None` if the bridge does not leave into the area.
+fn angle_error(merged: &Contour, from: usize, contour: &Contour, to: usize) -> Option<f64> {
     let (a, b) = (merged.at[from], contour.at[to]);
     if a == b {
         return None;
@@ -78,10 +107,7 @@ fn cost(merged: &Contour, from: usize, contour: &Contour, to: usize) -> Option<f
     let direction = (b[1] - a[1]).atan2(b[0] - a[0]);
     let there = splitting::end_error(merged.opening(from, direction), merged.angle[from])?;
     let opening = contour.opening(to, direction + PI);
-    let back = splitting::end_error(opening, contour.angle[to])?;
-    let spacing_m = 0.5 * (merged.spacing_m[from] + contour.spacing_m[to]);
-    let length = distance(a, b) / spacing_m;
-    Some(length + ANGLE_COST * (there + back))
+    Some(there + splitting::end_error(opening, contour.angle[to])?)
 }
 
 /// The loop that goes over the bridge, round the inner walk and back.

@@ -42,44 +42,48 @@ pub fn check(loops: &Loops, patch: &Patch) -> Result<(), Defect> {
             if jacobian.is_nan() || jacobian <= 0.0 {
                 return defect(format!("a corner Jacobian is {jacobian} m2"), quad[k]);
             }
-            sides.push((quad[k], quad[(k + 1) % 4]));
+            sides.push(key(quad[k], quad[(k + 1) % 4], QUAD));
         }
     }
-    sides.sort_unstable();
-    if let Some(pair) = sides.windows(2).find(|pair| pair[0] == pair[1]) {
-        return defect(
-            "two quads lie on the same side of an edge".into(),
-            pair[0].0,
+    for walk in &loops.walks {
+        let ends = walk.iter().skip(1).chain(walk.first());
+        sides.extend(
+            walk.iter()
+                .zip(ends)
+                .map(|(&from, &to)| key(from, to, WALK)),
         );
     }
-    let walked = walk_edges(loops);
-    for edge in &walked {
-        if sides.binary_search(edge).is_err() {
-            return defect("a walk edge has no quad on its left".into(), edge.0);
-        }
-    }
-    for side in &sides {
-        let on_walk = walked.binary_search(side).is_ok();
-        let back = (side.1, side.0);
-        if !on_walk && (walked.binary_search(&back).is_ok() || sides.binary_search(&back).is_err())
-        {
-            return defect("an edge off the walks is used once".into(), side.0);
-        }
-        if on_walk && walked.binary_search(&back).is_err() && sides.binary_search(&back).is_ok() {
-            return defect("a quad lies on the right of a walk".into(), side.0);
+    sides.sort_unstable();
+    for edge in sides.chunk_by(|a, b| a >> 2 == b >> 2) {
+        if let Some(what) = misuse(edge) {
+            return defect(what.into(), (edge[0] >> 33) as u32);
         }
     }
     Ok(())
 }
 
-/// All directed walk edges, sorted.
-fn walk_edges(loops: &Loops) -> Vec<(u32, u32)> {
-    let mut edges = Vec::new();
-    for walk in &loops.walks {
-        for k in 0..walk.len() {
-            edges.push((walk[k], walk[(k + 1) % walk.len()]));
-        }
+const QUAD: u64 = 0;
+const WALK: u64 = 2;
+
+/// A directed side to sort by edge: lower node, higher node, then who has it, then its direction.
+/// Node numbers are below 2^31, as a sub-domain has far fewer nodes.
+fn key(from: u32, to: u32, owner: u64) -> u64 {
+    let edge = u64::from(from.min(to)) << 33 | u64::from(from.max(to)) << 2;
+    edge | owner | u64::from(from > to)
+}
+
+/// What is wrong with an edge, given all sides on it.
+fn misuse(edge: &[u64]) -> Option<&'static str> {
+    let count = |kind: u64| edge.iter().filter(|&&side| side & 3 == kind).count();
+    let quads = [count(QUAD), count(QUAD | 1)];
+    let walks = [count(WALK), count(WALK | 1)];
+    if quads[0] > 1 || quads[1] > 1 {
+        Some("two quads lie on the same side of an edge")
+    } else if walks == [0, 0] {
+        (quads != [1, 1]).then_some("an edge off the walks is used once")
+    } else if quads[0] < walks[0] || quads[1] < walks[1] {
+        Some("a walk edge has no quad on its left")
+    } else {
+        (quads != walks).then_some("a quad lies on the right of a walk")
     }
-    edges.sort_unstable();
-    edges
 }

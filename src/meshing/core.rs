@@ -85,7 +85,7 @@ impl Core {
             high[0].ceil() + 2.0 - base[0],
             high[1].ceil() + 2.0 - base[1],
         ];
-        if !(extent[0] * extent[1] < LARGEST_MAP) {
+        if extent[0] * extent[1] > LARGEST_MAP {
             return None;
         }
         lattice.origin_m = lattice.place(base);
@@ -425,4 +425,55 @@ fn capsule_on_row(a: Xy, b: Xy, radius: f64, y: f64) -> Option<[f64; 2]> {
         }
     }
     (low < high).then_some([low, high])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::quad::distance;
+    use crate::meshing::clearance::Clearance;
+    use crate::meshing::patch::Loops;
+
+    /// A star with 7 rays, its inner and outer radii not on any lattice.
+    fn star() -> Visits {
+        let place = |k: u32| {
+            let (radius, angle) = (15.3 + 7.9 * f64::from(k % 2), f64::from(k) * 0.4488);
+            [radius * angle.cos(), radius * angle.sin()]
+        };
+        Visits::of(&Loops {
+            nodes: (0..14).map(place).collect(),
+            walks: vec![(0..14).collect()],
+            size_m: 1.0,
+            lattice_origin: None,
+            on_seam: vec![vec![false; 14]],
+        })
+    }
+
+    #[test]
+    fn cells_are_open_exactly_where_all_corners_are_clear() {
+        let visits = star();
+        let next: Vec<u32> = (1..15).map(|k| k % 14).collect();
+        let lattice = Lattice::fit(&visits, &next, 1.0);
+        let mut core = Core::blank(&visits, lattice).expect("small");
+        core.fill_inside(&next);
+        core.clear_near(&visits, &next);
+        let edge = |v: usize| [visits.nodes[v], visits.nodes[next[v] as usize]];
+        let radius = |[a, b]: [Xy; 2]| CLEARANCE.max(1.0 + 0.8 * distance(a, b)) - 1e-6;
+        let twin = |v: usize| (Clearance::of(vec![edge(v)], 1.0), radius(edge(v)));
+        let twins: Vec<(Clearance, f64)> = (0..14).map(twin).collect();
+        let whole = Clearance::of((0..14).map(edge).collect(), 1.0);
+        for j in 1..core.rows - 1 {
+            for i in 1..core.columns - 1 {
+                let (x, y) = (i as f64, j as f64);
+                let place = |u: Xy| core.lattice.place(u);
+                let clear = [[x, y], [x + 1.0, y], [x, y + 1.0], [x + 1.0, y + 1.0]]
+                    .into_iter()
+                    .all(|u| twins.iter().all(|(e, r)| e.nearest(place(u), *r).is_none()));
+                let centre = whole.nearest(place([x + 0.5, y + 0.5]), 50.0);
+                let inside = centre.is_some_and(|nearest| nearest.inside);
+                let open = core.cells[j * core.columns + i] == cell::OPEN;
+                assert_eq!(open, clear && inside, "cell {i} {j}");
+            }
+        }
+    }
 }

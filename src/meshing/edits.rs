@@ -53,6 +53,9 @@ pub(crate) fn valence_cost(kernel: &Kernel, node: u32, count: i32) -> f32 {
     } else if count < 1 || ideal / count as f32 > 1.83 {
         // One corner would be wider than 165 degrees.
         square + 4.0
+    } else if count > 1 && ideal / (count as f32) < 0.5 {
+        // Corners would be sharper than 45 degrees for no need.
+        square + 3.0
     } else {
         square
     }

@@ -10,16 +10,15 @@ use crate::meshing::contour::Contour;
 use crate::meshing::draft::Draft;
 use crate::meshing::patch::Method;
 use crate::meshing::patterns;
-use crate::meshing::sheet::Shape;
 use crate::meshing::sheet::Sheet;
 use crate::meshing::splitting;
 use crate::meshing::splitting::Split;
 use crate::meshing::visits::Visits;
 
-/// Longest walk, and longest loop with its bridges: lines cost O(n²), so longer ones are for methods
-/// that scale.
-const LONGEST: usize = 400;
-const LONGEST_MERGED: usize = 600;
+/// Most visits, and longest loop with its bridges: comparing lines costs O(n²), so more are for
+/// methods that scale. At 700 visits the lines cost a third of the finish.
+const LONGEST: usize = 1200;
+const LONGEST_MERGED: usize = 2400;
 /// A pattern with a least scaled Jacobian above this ends the splitting.
 const PATTERN_LEAST: f64 = 0.5;
 /// Loops up to this length try several lines.
@@ -35,22 +34,28 @@ pub(crate) fn mesh(visits: &Visits, size_m: f64) -> Option<Draft> {
     if ids.len() > LONGEST_MERGED {
         return None;
     }
-    let mut open = vec![ids];
-    let mut whole = true;
-    while let Some(ids) = open.pop() {
-        // The whole is left to `mapping`: here it is split even where a pattern would fit.
-        if ids.len() <= 6 || (ids.len() <= SMALL && !whole) {
-            lay_small(&mut sheet, ids, size_m)?;
-            continue;
+    // The whole is left to `mapping`: here it is split even where a pattern would fit.
+    let contour = Contour::of(&sheet, ids);
+    if contour.len() <= SMALL {
+        lay_small(&mut sheet, &contour, size_m)?;
+    } else {
+        let mut open = split(&mut sheet, &contour, size_m)?.to_vec();
+        while let Some(ids) = open.pop() {
+            let contour = Contour::of(&sheet, ids);
+            if contour.len() <= SMALL {
+                lay_small_or_pattern(&mut sheet, &contour, size_m)?;
+            } else if !lay_pattern(&mut sheet, &contour) {
+                open.extend(split(&mut sheet, &contour, size_m)?);
+            }
         }
-        let contour = Contour::of(&sheet, ids);
-        if whole || !lay_pattern(&mut sheet, &contour) {
-            let split = splitting::best(&contour, size_m, 1).pop()?;
-            open.extend(halves(&mut sheet, &contour, split, size_m));
-        }
-        whole = false;
     }
     Some(sheet.into_draft(visits.len(), Method::Looping))
+}
+
+/// Splits a loop by its best line.
+fn split(sheet: &mut Sheet, contour: &Contour, size_m: f64) -> Option<[Vec<u32>; 2]> {
+    let split = splitting::best(sheet, contour, size_m, 1).pop()?;
+    Some(splitting::halves(sheet, contour, split, size_m))
 }
 
 /// Lays a pattern if it has good shape.
@@ -63,24 +68,30 @@ fn lay_pattern(sheet: &mut Sheet, contour: &Contour) -> bool {
     good
 }
 
-/// Meshes a small loop by the best of several lines, tried to the end.
-fn lay_small(sheet: &mut Sheet, ids: Vec<u32>, size_m: f64) -> Option<Shape> {
-    if ids.len() <= 6 {
-        return Some(closures::close(sheet, &ids));
+/// Meshes a small loop by a pattern if one fits well.
+fn lay_small_or_pattern(sheet: &mut Sheet, contour: &Contour, size_m: f64) -> Option<()> {
+    if contour.len() > 6 && lay_pattern(sheet, contour) {
+        return Some(());
     }
-    let contour = Contour::of(sheet, ids);
-    let mark = sheet.mark();
-    if lay_pattern(sheet, &contour) {
-        return Some(sheet.shape(mark));
-    }
+    lay_small(sheet, contour, size_m)
+}
+
+/// Meshes a small loop by a closure, or by the best of several lines, each tried to the end.
+fn lay_small(sheet: &mut Sheet, contour: &Contour, size_m: f64) -> Option<()> {
     let tried = match contour.len() {
+        4 | 6 => {
+            closures::close(sheet, &contour.ids);
+            return Some(());
+        }
         8 => 8,
         10 => 4,
         _ => 2,
     };
+    let mark = sheet.mark();
     let mut best: Option<(f64, Split)> = None;
-    for split in splitting::best(&contour, size_m, tried) {
-        if let Some(shape) = lay_halves(sheet, &contour, split, size_m) {
+    for split in splitting::best(sheet, contour, size_m, tried) {
+        if lay_halves(sheet, contour, split, size_m).is_some() {
+            let shape = sheet.shape(mark);
             let worth = shape.mean.min(0.5 + shape.least);
             if best.is_none_or(|(most, _)| worth > most) {
                 best = Some((worth, split));
@@ -88,30 +99,13 @@ fn lay_small(sheet: &mut Sheet, ids: Vec<u32>, size_m: f64) -> Option<Shape> {
         }
         sheet.undo(mark);
     }
-    lay_halves(sheet, &contour, best?.1, size_m)
+    lay_halves(sheet, contour, best?.1, size_m)
 }
 
-fn lay_halves(sheet: &mut Sheet, contour: &Contour, split: Split, size_m: f64) -> Option<Shape> {
-    let mark = sheet.mark();
-    let [left, right] = halves(sheet, contour, split, size_m);
-    lay_small(sheet, left, size_m)?;
-    lay_small(sheet, right, size_m)?;
-    Some(sheet.shape(mark))
-}
-
-/// Lays the line and returns the loops on both sides of it.
-fn halves(sheet: &mut Sheet, contour: &Contour, split: Split, size_m: f64) -> [Vec<u32>; 2] {
-    let Split {
-        from, to, count, ..
-    } = split;
-    let ends = [contour.ids[from], contour.ids[to]];
-    let ends_m = [contour.spacing_m[from], contour.spacing_m[to]];
-    let line = splitting::lay_line(sheet, ends, ends_m, size_m, count);
-    let inner = &line[1..line.len() - 1];
-    let mut left = contour.ids[from..=to].to_vec();
-    left.extend(inner.iter().rev());
-    let mut right = contour.ids[to..].to_vec();
-    right.extend(&contour.ids[..=from]);
-    right.extend(inner);
-    [left, right]
+fn lay_halves(sheet: &mut Sheet, contour: &Contour, split: Split, size_m: f64) -> Option<()> {
+    for ids in splitting::halves(sheet, contour, split, size_m) {
+        let half = Contour::of(sheet, ids);
+        lay_small_or_pattern(sheet, &half, size_m)?;
+    }
+    Some(())
 }

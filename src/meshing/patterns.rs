@@ -46,6 +46,15 @@ struct Plan {
     cut: Option<Cut>,
 }
 
+/// What the plans are for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Search {
+    /// To be laid.
+    Whole,
+    /// Only to know how well they fit: of a pair, that it most likely exists.
+    Promise,
+}
+
 /// A line across corner 0 of a loop with four sides: `before` edges up to it, `after` edges past it
 /// and `across` on the line itself make a triangle; the rest has five sides.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +72,7 @@ pub(crate) fn lay(sheet: &mut Sheet, contour: &Contour) -> Option<Shape> {
     }
     let mark = sheet.mark();
     let mut best: Option<(f64, Plan)> = None;
-    for plan in plans(contour) {
+    for plan in plans(contour, Search::Whole) {
         let price = 0.4 * plan.misfit;
         if best.as_ref().is_some_and(|(worth, _)| worth + price > 1.0) {
             continue;
@@ -78,8 +87,19 @@ pub(crate) fn lay(sheet: &mut Sheet, contour: &Contour) -> Option<Shape> {
     best.map(|(_, plan)| lay_plan(sheet, contour, &plan))
 }
 
+/// How well `contour` promises to fit a pattern, from 0 to 1; the positions inside are not looked at.
+pub(crate) fn promise(contour: &Contour) -> f64 {
+    if contour.len() < 4 || contour.angle.iter().any(|&angle| angle > REFLEX) {
+        return 0.0;
+    }
+    let plans = plans(contour, Search::Promise);
+    plans
+        .first()
+        .map_or(0.0, |plan| (1.0 - plan.misfit).max(0.0))
+}
+
 /// The plans worth trying, best first.
-fn plans(contour: &Contour) -> Vec<Plan> {
+fn plans(contour: &Contour, search: Search) -> Vec<Plan> {
     let mut plans = Vec::new();
     plans.extend(grid_plan(contour));
     let corners: Vec<usize> = (0..contour.len())
@@ -93,7 +113,7 @@ fn plans(contour: &Contour) -> Vec<Plan> {
             if mask & must == must && (3..=6).contains(&mask.count_ones()) {
                 let taken = (0..corners.len()).filter(|k| mask >> k & 1 == 1);
                 let chosen: Vec<usize> = taken.map(|k| corners[k]).collect();
-                plans.extend(plan_with_corners(contour, &chosen));
+                plans.extend(plan_with_corners(contour, &chosen, search));
             }
         }
     }
@@ -146,7 +166,7 @@ fn grid_plan(contour: &Contour) -> Option<Plan> {
 }
 
 /// The star or pair over these corners, if the counts allow it.
-fn plan_with_corners(contour: &Contour, corners: &[usize]) -> Option<Plan> {
+fn plan_with_corners(contour: &Contour, corners: &[usize], search: Search) -> Option<Plan> {
     let gain: f64 = corners.iter().map(|&i| corner_gain(contour.angle[i])).sum();
     let misfit = misfit_without_corners(contour) + gain;
     if misfit > WORST_MISFIT {
@@ -157,7 +177,15 @@ fn plan_with_corners(contour: &Contour, corners: &[usize]) -> Option<Plan> {
         if counts[0] == counts[2] && counts[1] == counts[3] {
             return None;
         }
-        return pair_plan(contour, corners, misfit + 2.0 * IRREGULAR);
+        let misfit = misfit + 2.0 * IRREGULAR;
+        return match search {
+            Search::Whole => pair_plan(contour, corners, misfit),
+            Search::Promise => Some(Plan {
+                misfit,
+                corners: corners.to_vec(),
+                cut: None,
+            }),
+        };
     }
     spokes(&counts)?;
     // A valence of 3 or 5 is one step from regular, 6 is two.

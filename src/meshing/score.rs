@@ -2,6 +2,7 @@
 
 use crate::geometry::quad::hydraulic_size_m;
 use crate::geometry::quad::scaled_jacobian;
+use crate::meshing::patch::Loops;
 use crate::meshing::patch::Patch;
 use crate::meshing::visits::Visits;
 use std::f64::consts::FRAC_PI_2;
@@ -24,14 +25,14 @@ pub struct Score {
 }
 
 impl Score {
-    /// Measures a patch of which `boundary` nodes lie on the walks.
-    pub(crate) fn of(patch: &Patch, boundary: usize, size_m: f64, bound: f64) -> Score {
+    /// Measures a patch.
+    pub(crate) fn of(patch: &Patch, visits: &Visits, loops: &Loops) -> Score {
         let mut score = Score {
             least: 1.0,
             mean: 0.0,
             irregular: 0.0,
             size: 1.0,
-            bound,
+            bound: bound(visits),
             worst_quad: 0,
         };
         let mut valence = vec![0_u32; patch.nodes.len()];
@@ -43,13 +44,13 @@ impl Score {
                 score.least = quality;
                 score.worst_quad = k as u32;
             }
-            score.size = score.size.min(hydraulic_size_m(&corners) / size_m);
+            score.size = score.size.min(hydraulic_size_m(&corners) / loops.size_m);
             for &node in quad {
                 valence[node as usize] += 1;
             }
         }
         score.mean /= patch.quads.len().max(1) as f64;
-        let inner = &valence[boundary.min(valence.len())..];
+        let inner = &valence[loops.nodes.len()..];
         let irregular = inner.iter().filter(|&&count| count != 4).count();
         score.irregular = irregular as f64 / inner.len().max(1) as f64;
         score
@@ -66,7 +67,7 @@ impl Score {
 }
 
 /// The sine of the sharpest walk corner, 1 if none is sharper than a right angle.
-pub(crate) fn bound(visits: &Visits) -> f64 {
+fn bound(visits: &Visits) -> f64 {
     let angles = (0..visits.len() as u32).map(|visit| visits.angle(visit));
     angles.fold(FRAC_PI_2, f64::min).sin()
 }

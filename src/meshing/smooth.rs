@@ -43,8 +43,8 @@ pub(crate) const PERFECT: Phase = Phase {
     squared: true,
 };
 
-/// Below this move, as a share of the wished edge length, a node is at rest.
-const REST: f64 = 2e-3;
+/// Below this move, as a share of the wished edge length, local smoothing has done its work.
+const LOCAL_REST: f64 = 1e-2;
 
 /// Sets the wished edge length of every node: on the outline half the length of its two edges,
 /// inside the mean of the neighbours drawn towards `size_m`.
@@ -75,20 +75,36 @@ pub(crate) fn wish(kernel: &mut Kernel, size_m: f64) {
     }
 }
 
-/// Smooths all free nodes: at most `sweeps` sweeps, in the order of their numbers; nodes at rest
-/// whose neighbours rest are passed over.
-pub(crate) fn smooth_all(kernel: &mut Kernel, phase: Phase, sweeps: usize) {
+/// Smooths all free nodes: at most `sweeps` sweeps, in the order of their numbers. A node that moves
+/// by less than `rest` wished lengths rests until a neighbour moves.
+pub(crate) fn smooth_all(kernel: &mut Kernel, phase: Phase, sweeps: usize, rest: f64) {
+    let mut awake = vec![true; kernel.nodes.len()];
+    sweep(kernel, phase, sweeps, rest, &mut awake);
+}
+
+/// Opens tangles: smooths around quads below `below` only, and as far as that makes others move.
+pub(crate) fn untangle(kernel: &mut Kernel, below: f64, sweeps: usize, rest: f64) {
+    let mut awake = vec![false; kernel.nodes.len()];
+    for quad in 0..kernel.quads.len() as u32 {
+        if kernel.lives(quad) && kernel.quality(quad) < below {
+            for node in kernel.quads[quad as usize] {
+                awake[node as usize] = true;
+            }
+        }
+    }
+    sweep(kernel, OPEN, sweeps, rest, &mut awake);
+}
+
+fn sweep(kernel: &mut Kernel, phase: Phase, sweeps: usize, rest: f64, awake: &mut [bool]) {
     let free = |node: &u32| !kernel.held[*node as usize] && kernel.valence[*node as usize] > 0;
     let nodes: Vec<u32> = (0..kernel.nodes.len() as u32).filter(free).collect();
-    let mut awake = vec![true; kernel.nodes.len()];
     for _ in 0..sweeps {
         let mut any = false;
         for &node in &nodes {
             if !std::mem::take(&mut awake[node as usize]) {
                 continue;
             }
-            let moved = relax(kernel, node, phase);
-            if moved > REST {
+            if relax(kernel, node, phase) > rest {
                 any = true;
                 awake[node as usize] = true;
                 for side in kernel.spokes(node) {
@@ -110,7 +126,7 @@ pub(crate) fn smooth_few(kernel: &mut Kernel, nodes: &[u32], phase: Phase, sweep
         for &node in nodes {
             most = most.max(relax(kernel, node, phase));
         }
-        if most < 5.0 * REST {
+        if most < LOCAL_REST {
             break;
         }
     }
@@ -418,4 +434,49 @@ impl Expansion {
 
 fn minus(a: Xy, b: Xy) -> Xy {
     [a[0] - b[0], a[1] - b[1]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A star of three quads around a node near the origin, one of them inverted.
+    fn star() -> Star {
+        let quad = |next: Xy, far: Xy, last: Xy| StarQuad {
+            next,
+            far,
+            last,
+            next_scale: 1.1,
+            last_scale: 0.8,
+        };
+        let mut quads = Few::new();
+        quads.push(quad([1.0, 0.1], [0.9, 1.2], [-0.1, 1.0]));
+        quads.push(quad([-0.1, 1.0], [-1.0, 0.9], [-0.8, -0.7]));
+        quads.push(quad([-0.8, -0.7], [0.2, -0.1], [1.0, 0.1]));
+        Star { quads, scale: 0.9 }
+    }
+
+    #[test]
+    fn derivatives_agree_with_differences() {
+        let star = star();
+        let (at, step) = ([0.05, -0.02], 1e-4);
+        for phase in [OPEN, PERFECT] {
+            let f = |x: f64, y: f64| star.energy([at[0] + x * step, at[1] + y * step], phase).0;
+            let expansion = star.expand(at, phase);
+            let slope = [f(1.0, 0.0) - f(-1.0, 0.0), f(0.0, 1.0) - f(0.0, -1.0)];
+            let middle = 2.0 * f(0.0, 0.0);
+            let bend = [
+                f(1.0, 0.0) + f(-1.0, 0.0) - middle,
+                0.25 * (f(1.0, 1.0) + f(-1.0, -1.0) - f(1.0, -1.0) - f(-1.0, 1.0)),
+                f(0.0, 1.0) + f(0.0, -1.0) - middle,
+            ];
+            let close = |a: f64, b: f64| (a - b).abs() < 1e-3 * (1.0 + a.abs());
+            for k in 0..2 {
+                assert!(close(expansion.gradient[k], slope[k] / (2.0 * step)));
+            }
+            for k in 0..3 {
+                assert!(close(expansion.hessian[k], bend[k] / (step * step)));
+            }
+        }
+    }
 }

@@ -1,9 +1,11 @@
 //! The best line to split a loop in two.
 //!
-//! Cost of a line after Talbert and Parkinson 1990 with the terms of Sarrate and Huerta 2000: the
-//! angles at both ends, its length, how badly whole edges fit on it, and (ours) how near it passes
-//! other nodes. Where we depart: an angle part is measured against the nearest multiple of 90
-//! degrees, not against 90, and what the corner lacked before the split is not charged to it.
+//! Cost of a line after Talbert and Parkinson 1990: the angles at both ends, its length, how badly
+//! whole edges fit on it; with a structuring index and a term for symmetry as Sarrate and Huerta 2000
+//! have them, here how well the halves fit a pattern and how much their lengths differ; and (ours)
+//! how near it passes other nodes. Where we depart: an angle part is measured against the nearest
+//! multiple of 90 degrees, not against 90, and what the corner lacked before the split is not
+//! charged to it.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -14,19 +16,34 @@ use std::f64::consts::TAU;
 use crate::geometry::point::Xy;
 use crate::geometry::quad::distance;
 use crate::meshing::contour::Contour;
+use crate::meshing::patterns;
 use crate::meshing::sheet::Sheet;
 
-/// Weights of angles, length, fit of whole edges, nearness.
-const ANGLES: f64 = 0.5;
+/// Weights of angles, length, fit of whole edges, nearness, structure, symmetry. Those of the paper
+/// (.5, .3 and .2 for the first three) give 5 % more irregular nodes in five cities. Halves of like
+/// length are worth little for shape, but keep the recursion of long loops shallow.
+const ANGLES: f64 = 1.0;
 const LENGTH: f64 = 0.3;
-const FIT: f64 = 0.2;
+const FIT: f64 = 0.1;
 const NEARNESS: f64 = 0.3;
+const STRUCTURE: f64 = 0.1;
+const SYMMETRY: f64 = 0.1;
+/// A node nearer to a line than this many times its spacing is near.
+const NEAR: f64 = 0.8;
 /// No part of an interior angle may be smaller, radians.
 const SHARPEST: f64 = 8.0 * PI / 180.0;
 /// From here on an interior angle is the tip of a slit: where a line leaves it hardly matters.
 const TIP: f64 = 315.0 * PI / 180.0;
-/// Visible lines that are compared with nearness.
+/// All lines of loops up to this length are compared; of longer ones those from reflex corners, and
+/// a share of the others: shifted by an entry or two, most are as good.
+const ALL_COMPARED: usize = 120;
+/// From here on a corner is reflex, radians.
+const REFLEX: f64 = 225.0 * PI / 180.0;
+/// Visible lines that are compared with nearness and structure.
 const COMPARED: usize = 6;
+/// Longest loop whose lines are compared for structure: the halves of longer ones are seldom
+/// patterns, and finding out is square in their length.
+const STRUCTURE_LONGEST: usize = 300;
 
 /// A line between two entries of a loop, `from < to`, in `count` edges.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,7 +56,7 @@ pub(crate) struct Split {
 
 /// Up to `most` lines inside the loop, cheapest first. Both sub-loops are even, have at least four
 /// entries and fewer than the loop.
-pub(crate) fn best(contour: &Contour, size_m: f64, most: usize) -> Vec<Split> {
+pub(crate) fn best(sheet: &mut Sheet, contour: &Contour, size_m: f64, most: usize) -> Vec<Split> {
     let mut heap = all(contour, size_m);
     let mut found: Vec<Split> = Vec::new();
     while let Some(Reverse((cost, from, to, count))) = heap.pop() {
@@ -49,16 +66,34 @@ pub(crate) fn best(contour: &Contour, size_m: f64, most: usize) -> Vec<Split> {
                 from,
                 to,
                 count: count as usize,
-                cost: f64::from_bits(cost) + NEARNESS * (0.8 - clearance).max(0.0),
+                cost: f64::from_bits(cost) + NEARNESS * (NEAR - clearance).max(0.0),
             });
             if found.len() == most.max(COMPARED) {
                 break;
             }
         }
     }
+    reward_structure(sheet, contour, size_m, &mut found);
     found.sort_by(|p, q| p.cost.total_cmp(&q.cost));
     found.truncate(most);
     found
+}
+
+/// Makes lines cheaper whose halves promise to be patterns.
+fn reward_structure(sheet: &mut Sheet, contour: &Contour, size_m: f64, splits: &mut [Split]) {
+    if !(9..=STRUCTURE_LONGEST).contains(&contour.len()) {
+        return;
+    }
+    let mark = sheet.mark();
+    for split in splits {
+        for ids in halves(sheet, contour, *split, size_m) {
+            if ids.len() > 4 {
+                let half = Contour::of(sheet, ids);
+                split.cost -= STRUCTURE * patterns::promise(&half);
+            }
+        }
+        sheet.undo(mark);
+    }
 }
 
 /// A line before it is known to be visible: bits of its (positive) cost, ends, count.
@@ -68,9 +103,14 @@ type Candidate = Reverse<(u64, u32, u32, u32)>;
 fn all(contour: &Contour, size_m: f64) -> BinaryHeap<Candidate> {
     let n = contour.len();
     let diagonal_m = diagonal_m(&contour.at);
+    let stride = n.div_ceil(ALL_COMPARED);
     let mut lines = Vec::new();
     for from in 0..n {
         for to in from + 2..n.min(from + n - 1) {
+            let reflex = contour.angle[from].max(contour.angle[to]) > REFLEX;
+            if !reflex && (from + to) % stride != 0 {
+                continue;
+            }
             let Some(angles) = angle_error(contour, from, to) else {
                 continue;
             };
@@ -82,7 +122,11 @@ fn all(contour: &Contour, size_m: f64) -> BinaryHeap<Candidate> {
             };
             let fit = misfit(count, ideal);
             // Splitting can gain up to two right angles in all; the cost stays positive.
-            let cost = ANGLES * (0.5 + angles / TAU) + LENGTH * length / diagonal_m + FIT * fit;
+            let shorter = (to - from).min(n - to + from);
+            let cost = ANGLES * (0.5 + angles / TAU)
+                + LENGTH * length / diagonal_m
+                + FIT * fit
+                + SYMMETRY * (1.0 - 2.0 * shorter as f64 / n as f64);
             lines.push(Reverse((
                 cost.max(0.0).to_bits(),
                 from as u32,
@@ -196,4 +240,26 @@ pub(crate) fn lay_line(
     }
     line.push(ends[1]);
     line
+}
+
+/// Lays the line and returns the loops on both sides of it.
+pub(crate) fn halves(
+    sheet: &mut Sheet,
+    contour: &Contour,
+    split: Split,
+    size_m: f64,
+) -> [Vec<u32>; 2] {
+    let Split {
+        from, to, count, ..
+    } = split;
+    let ends = [contour.ids[from], contour.ids[to]];
+    let ends_m = [contour.spacing_m[from], contour.spacing_m[to]];
+    let line = lay_line(sheet, ends, ends_m, size_m, count);
+    let inner = &line[1..line.len() - 1];
+    let mut left = contour.ids[from..=to].to_vec();
+    left.extend(inner.iter().rev());
+    let mut right = contour.ids[to..].to_vec();
+    right.extend(&contour.ids[..=from]);
+    right.extend(inner);
+    [left, right]
 }

@@ -17,13 +17,13 @@
 //! 1. `star`: the edges around each node, sorted by angle with exact predicates.
 //! 2. `walk`: leave each node by the sharpest left turn; a tile is any set of nodes. Walks that
 //!    leave it come out as fragments, joined by the half-edge on which one ends and the next begins
-//!    (faces of a doubly connected edge list, de Berg and others, chapter 2; unlike there, in tiles).
+//!    (faces of a doubly connected edge list, de Berg and others, chapter 2; but in tiles).
 //! 3. `nest`: which sub-domain is an inner walk in? One sweep over x with all edges that cross the
-//!    sweep line in vertical order: the edge right below the least node of the walk has it above. It
-//!    belongs to an outer walk or to an inner one that began earlier, so no union-find is needed.
-//! 4. `chain`: maximal chains of edges between junctions become curves. A junction is a node that is
-//!    not simply passed through: degree other than 2, change of source lines or of rim, a corner,
-//!    any node between two seam edges.
+//!    sweep line in vertical order: the edge right below the least node of the walk has it above.
+//!    It belongs to an outer walk or to an inner one that began earlier: no union-find is needed.
+//! 4. `chain`: maximal chains of edges between junctions become curves. A junction is a node that
+//!    is not simply passed through: degree other than 2, change of source lines or of rim, a
+//!    corner, any node between two seam edges.
 //! 5. `assemble`: walks of half-edges become walks of half-curves, with canonical numbers.
 //!
 //! `locate` asks the sweep of step 3 where any points lie.

@@ -44,8 +44,8 @@ impl PartialEq for Strand {
 
 impl Eq for Strand {}
 
-/// For each of `points` (ascending), the half-edge directly below it, with the point on its left; or
-/// `None` if there is none. They lie on no edge, but may be a node at which no edge ends in the
+/// For each of `points` (ascending), the half-edge directly below it, with the point on its left;
+/// or `None` if there is none. They lie on no edge, but may be a node at which no edge ends in the
 /// order of the points, as is the least node of an inner walk.
 ///
 /// The sweep line runs through one point after the other in their order, by x and then y: as if it

@@ -28,7 +28,8 @@ impl Tile {
     }
 
     /// Where in `stars.out` the half-edge after `half` is, on the same walk: the first clockwise
-    /// from where we came from, so that the face stays on the left. `None` if `half` leaves the tile.
+    /// from where we came from, so that the face stays on the left. `None` if `half` leaves the
+    /// tile.
     fn next(&self, arrangement: &Arrangement, half: HalfEdge) -> Option<usize> {
         let k = self.nodes.binary_search(&head(arrangement, half)).ok()?;
         let star = self.stars.of(k);

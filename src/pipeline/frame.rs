@@ -14,28 +14,28 @@ use crate::pipeline::plan::Plan;
 pub(super) fn frame(plan: &Plan) -> Frame {
     let site = plan.site();
     let grid = &plan.domain.grid;
-    let fixed = plan.arrangement.points.len();
+    let fixed = plan.city.arrangement.points.len();
     let total = plan.first[plan.first.len() - 1] as usize;
     let mut nodes = vec![[0.0; 2]; total];
-    for (node, &point) in nodes.iter_mut().zip(&plan.arrangement.points) {
+    for (node, &point) in nodes.iter_mut().zip(&plan.city.arrangement.points) {
         *node = grid.local_m(point);
     }
     let mut frame = Frame {
         fixed_nodes: fixed as u32,
         curve_start: vec![0],
         piece_start: vec![0],
-        subdomains: plan.partition.subdomains.clone(),
-        size_m: vec![plan.sizes.default_m; plan.partition.subdomains.len()],
-        goals: plan.goals.clone(),
-        certificate: Some(Certificate::from(plan.balance.clone())),
+        subdomains: plan.city.partition.subdomains.clone(),
+        size_m: vec![plan.sizes.default_m; plan.city.partition.subdomains.len()],
+        goals: plan.city.goals.clone(),
+        certificate: Some(Certificate::from(plan.city.balance.clone())),
         ..Frame::default()
     };
-    for (c, curve) in plan.partition.curves.iter().enumerate() {
+    for (c, curve) in plan.city.partition.curves.iter().enumerate() {
         let (ids, places) = curve_nodes(&site, c as u32);
         for (&id, &place) in ids.iter().zip(&places) {
             nodes[id as usize] = place;
         }
-        push_pieces(&mut frame, &plan.arrangement, &site, c, &ids, curve);
+        push_pieces(&mut frame, &plan.city.arrangement, &site, c, &ids, curve);
         frame.curve_nodes.extend(ids.iter().map(|&id| id as u32));
         frame.curve_start.push(frame.curve_nodes.len() as u32);
         frame.left.push(curve.left);

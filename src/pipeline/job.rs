@@ -30,6 +30,8 @@ pub struct Job {
     pub threads: usize,
     /// Replace an existing output.
     pub force: bool,
+    /// Go on where an earlier run of the same job was stopped, if there is one.
+    pub resume: bool,
 }
 
 /// Corner angle unless the job says otherwise, degrees.

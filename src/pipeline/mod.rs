@@ -12,7 +12,8 @@
 //!    sub-domains, and what fills a chunk is counted in bytes, not in time.
 //! 2. Memory follows the input and [`ordered::IN_FLIGHT_PER_WORKER`] patches a thread, never the
 //!    number of quads.
-//! 3. A run that fails leaves no output, or the old one.
+//! 3. A run that fails leaves no output, or the old one; from the end of phase B on it can be
+//!    resumed, after a kill too, and then gives the same bytes.
 //!
 //! # Not here
 //! Algorithms: every stage is a plain function that knows no thread.
@@ -35,6 +36,7 @@ use crate::check;
 use crate::chunk;
 use crate::chunk::linework::LineWork;
 use crate::chunk::reader::Mesh;
+use crate::chunk::record::ChunkReceipt;
 use crate::chunk::writer::Existing;
 use crate::chunk::writer::IndexRecord;
 use crate::chunk::writer::Place;
@@ -44,17 +46,21 @@ use crate::pipeline::job::Job;
 use crate::pipeline::log::Log;
 use crate::pipeline::outcome::Estimate;
 use crate::pipeline::outcome::Outcome;
+use crate::pipeline::plan::Plan;
 use crate::pipeline::progress::Listener;
 use crate::pipeline::progress::Stopwatch;
+use crate::spill;
 use std::fs;
+use std::path::Path;
 
 /// Line work in, mesh out, every promise checked.
 pub fn build(job: &Job, listener: Listener) -> Result<Outcome, Error> {
     preflight(job)?;
     let made = pool(job).install(|| build_here(job, listener));
-    if made.is_err() {
-        // What stopped us is worth more to the user than a second failure while tidying up.
-        let _ = fs::remove_dir_all(chunk::writer::partial_of(&job.output));
+    let partial = chunk::writer::partial_of(&job.output);
+    if made.is_err() && !partial.join(spill::NAME).exists() {
+        // Nothing to resume. What stopped us is worth more to the user than a second failure here.
+        let _ = fs::remove_dir_all(partial);
     }
     made
 }
@@ -63,7 +69,7 @@ pub fn build(job: &Job, listener: Listener) -> Result<Outcome, Error> {
 pub fn estimate(job: &Job, listener: Listener) -> Result<Estimate, Error> {
     pool(job).install(|| {
         let watch = Stopwatch::new(listener);
-        let plan = plan::plan(job, &watch)?;
+        let plan = plan::plan(job, &watch, None)?;
         Ok(Estimate::new(
             &plan,
             watch.stages(),
@@ -74,64 +80,79 @@ pub fn estimate(job: &Job, listener: Listener) -> Result<Estimate, Error> {
 
 fn build_here(job: &Job, listener: Listener) -> Result<Outcome, Error> {
     let watch = Stopwatch::new(listener);
-    let plan = plan::plan(job, &watch)?;
-    let place = Place {
-        epsg: plan.domain.epsg,
-        grid: plan.domain.grid,
-    };
-    let existing = if job.force {
-        Existing::Replace
-    } else {
-        Existing::Refuse
-    };
-    let writer = Writer::create(&job.output, existing, place)?;
+    let partial = chunk::writer::partial_of(&job.output);
+    let plan = plan::plan(job, &watch, job.resume.then_some(partial.as_path()))?;
+    let writer = begin(job, &plan, &partial)?;
     watch.stage("frame", 1, |_| -> Result<_, Error> {
         let frame = frame::frame(&plan);
         writer.write_frame(&frame)?;
         Ok(((), format!("{} nodes on lines", frame.nodes.len())))
     })?;
     let workers = rayon::current_num_threads();
-    let written = watch.stage(
-        "meshing",
-        plan.quads_expected(),
-        |count| -> Result<_, Error> {
-            let written = patches::mesh_all(&plan, &writer, workers, count)?;
-            let patches = written.receipts.iter().flat_map(|it| &it.patches);
-            let quads: u64 = patches.map(|it| it.quads).sum();
-            Ok((written, format!("{quads} quads")))
-        },
-    )?;
-    let mut findings = plan.findings.clone();
-    findings.extend(written.findings);
-    writer.write_lines(&LineWork {
-        domain: &plan.domain,
-        dropped: &plan.dropped,
-        changes: &plan.changes,
-        tally: &plan.tally,
-        findings: &findings,
+    let receipts = watch.stage("meshing", plan.quads_expected(), |count| {
+        let receipts = patches::mesh_all(&plan, &writer, workers, count)?;
+        let patches = receipts.iter().flat_map(|it| &it.patches);
+        let quads: u64 = patches.map(|it| it.quads).sum();
+        Ok::<_, Error>((receipts, format!("{quads} quads")))
     })?;
-    writer.seal(
-        written.receipts,
-        &IndexRecord {
-            size_m: job.size_m,
-            tolerance_m: job.tolerance_in_force_m(),
-            job: job.echo(),
-            input_digest: plan.domain.digest,
-        },
-    )?;
+    finish(job, &plan, &partial, writer, receipts)?;
     let verdict = watch.stage("check", 1, |_| -> Result<_, Error> {
         let verdict = check::check(&Mesh::open(&job.output)?, &check::OPTIONS);
-        let note = if verdict.holds() {
-            "every promise holds"
-        } else {
-            "A PROMISE IS BROKEN"
+        let note = match verdict.holds() {
+            true => "every promise holds",
+            false => "A PROMISE IS BROKEN",
         };
         Ok((verdict, note.to_string()))
     })?;
-    let outcome = Outcome::new(job, &plan, &findings, verdict, watch.stages());
+    let outcome = Outcome::new(job, &plan, verdict, watch.stages());
     let log = Log::new(&outcome.stages, outcome.peak_memory_bytes);
     (log.write(&job.output)).map_err(|it| Error::Write(job.output.clone(), it))?;
     Ok(outcome)
+}
+
+/// Opens the growing mesh folder, with what an earlier run left there if this one resumes it.
+fn begin(job: &Job, plan: &Plan, partial: &Path) -> Result<Writer, Error> {
+    let place = Place {
+        epsg: plan.domain.epsg,
+        grid: plan.domain.grid,
+    };
+    let existing = match job.force {
+        true => Existing::Replace,
+        false => Existing::Refuse,
+    };
+    let key = plan::key(job, &plan.domain);
+    if job.resume && spill::fetch(partial, &key).is_some() {
+        return Ok(Writer::reopen(&job.output, existing, place)?);
+    }
+    let writer = Writer::create(&job.output, existing, place)?;
+    let refused = |it| Error::Write(partial.to_path_buf(), it);
+    spill::park(partial, &key, &plan.city).map_err(refused)?;
+    Ok(writer)
+}
+
+/// Writes what comes last and gives the mesh its name.
+fn finish(
+    job: &Job,
+    plan: &Plan,
+    partial: &Path,
+    writer: Writer,
+    receipts: Vec<ChunkReceipt>,
+) -> Result<(), Error> {
+    writer.write_lines(&LineWork {
+        domain: &plan.domain,
+        dropped: &plan.city.dropped,
+        changes: &plan.city.changes,
+        tally: &plan.city.tally,
+        findings: &plan.city.findings,
+    })?;
+    spill::remove(partial).map_err(|it| Error::Write(partial.to_path_buf(), it))?;
+    let record = IndexRecord {
+        size_m: job.size_m,
+        tolerance_m: job.tolerance_in_force_m(),
+        job: job.echo(),
+        input_digest: plan.domain.digest,
+    };
+    Ok(writer.seal(receipts, &record)?)
 }
 
 /// Refuses at once what would only fail after the work: an output that exists or cannot be made.

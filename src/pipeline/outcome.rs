@@ -39,28 +39,22 @@ pub struct Outcome {
 
 impl Outcome {
     /// Gathers the numbers of a finished build.
-    pub(super) fn new(
-        job: &Job,
-        plan: &Plan,
-        findings: &[crate::domain::finding::Finding],
-        verdict: Verdict,
-        stages: Vec<StageTime>,
-    ) -> Outcome {
+    pub(super) fn new(job: &Job, plan: &Plan, verdict: Verdict, stages: Vec<StageTime>) -> Outcome {
         let mut by_kind = BTreeMap::new();
-        for finding in findings {
+        for finding in &plan.city.findings {
             *by_kind.entry(finding.what).or_insert(0) += 1;
         }
         let budget = f64::from(job.seam_budget_quads);
         Outcome {
             stages,
-            subdomains: plan.partition.subdomains.len(),
-            curves: plan.partition.curves.len(),
-            displacement_max_m: plan.tally.displacement_max_m,
-            displacement_p99_m: plan.tally.displacement_p99_m,
-            length_m: plan.tally.length_m,
-            length_dropped_m: plan.tally.length_dropped_m,
-            ilp_gap: plan.balance.gap(),
-            odd_share: plan.balance.odd_share,
+            subdomains: plan.city.partition.subdomains.len(),
+            curves: plan.city.partition.curves.len(),
+            displacement_max_m: plan.city.tally.displacement_max_m,
+            displacement_p99_m: plan.city.tally.displacement_p99_m,
+            length_m: plan.city.tally.length_m,
+            length_dropped_m: plan.city.tally.length_dropped_m,
+            ilp_gap: plan.city.balance.gap(),
+            odd_share: plan.city.balance.odd_share,
             largest_patch_over_budget: verdict.quality.largest_patch.0 as f64 / budget,
             findings: by_kind,
             peak_memory_bytes: peak_memory_bytes(),
@@ -119,7 +113,7 @@ impl Estimate {
         Estimate {
             quads,
             boundary_nodes,
-            subdomains: plan.partition.subdomains.len(),
+            subdomains: plan.city.partition.subdomains.len(),
             // A chunk exists as records and as a buffer; the frame is built in memory.
             memory_bytes: peak_memory_bytes()
                 + (3 * crate::chunk::CHUNK_BYTES) as u64

@@ -5,7 +5,6 @@ use crate::chunk;
 use crate::chunk::record::ChunkReceipt;
 use crate::chunk::record::PatchRecord;
 use crate::chunk::writer::Writer;
-use crate::domain::finding::Finding;
 use crate::meshing;
 use crate::meshing::patch::Loops;
 use crate::partition::subdomains::SubdomainId;
@@ -13,85 +12,72 @@ use crate::pipeline::error::Error;
 use crate::pipeline::ordered::in_order;
 use crate::pipeline::plan::Plan;
 
-/// A patch on its way to the writer.
-struct Meshed {
-    record: PatchRecord,
-    findings: Vec<Finding>,
-}
-
-/// What phase C leaves behind.
-pub(super) struct Written {
-    /// One a chunk.
-    pub receipts: Vec<ChunkReceipt>,
-    /// What could not be meshed well, and why.
-    pub findings: Vec<Finding>,
-}
-
-/// Meshes all sub-domains on `workers` threads and writes chunks as they fill.
+/// Meshes all sub-domains on `workers` threads and writes chunks as they fill; goes on after the
+/// chunks that an earlier run finished. Returns a receipt a chunk.
+///
+/// What a chunk holds follows from the sizes of its patches alone, so a resumed run writes the same
+/// chunks.
 pub(super) fn mesh_all(
     plan: &Plan,
     writer: &Writer,
     workers: usize,
     count: &(dyn Fn(u64) + Sync),
-) -> Result<Written, Error> {
-    let mut written = Written {
-        receipts: Vec::new(),
-        findings: Vec::new(),
-    };
+) -> Result<Vec<ChunkReceipt>, Error> {
+    let mut receipts = finished_chunks(writer);
+    let patches = receipts.iter().flat_map(|it| &it.patches);
+    count(patches.clone().map(|it| it.quads).sum());
+    let done = patches.count() as u32;
     let mut waiting: Vec<PatchRecord> = Vec::new();
     let mut bytes = 0;
-    let subdomains = plan.partition.subdomains.len() as u32;
-    let flush = |waiting: &mut Vec<PatchRecord>, written: &mut Written| -> Result<(), Error> {
-        let number = written.receipts.len() as u32;
-        written.receipts.push(writer.write_chunk(number, waiting)?);
-        waiting.clear();
-        Ok(())
-    };
+    let left = plan.city.partition.subdomains.len() as u32 - done;
     in_order(
-        subdomains,
+        left,
         workers,
-        |subdomain| mesh_one(plan, subdomain),
-        |_, meshed: Meshed| -> Result<(), Error> {
-            count(meshed.record.quads.len() as u64);
-            written.findings.extend(meshed.findings);
-            bytes += meshed.record.bytes();
-            waiting.push(meshed.record);
+        |n| mesh_one(plan, done + n),
+        |_, patch: PatchRecord| -> Result<(), Error> {
+            count(patch.quads.len() as u64);
+            bytes += patch.bytes();
+            waiting.push(patch);
             if bytes >= chunk::CHUNK_BYTES {
                 bytes = 0;
-                flush(&mut waiting, &mut written)?;
+                receipts.push(writer.write_chunk(receipts.len() as u32, &waiting)?);
+                waiting.clear();
             }
             Ok(())
         },
     )?;
     if !waiting.is_empty() {
-        flush(&mut waiting, &mut written)?;
+        receipts.push(writer.write_chunk(receipts.len() as u32, &waiting)?);
     }
-    Ok(written)
+    Ok(receipts)
+}
+
+/// Receipts of the whole chunks that are there, up to the first gap.
+fn finished_chunks(writer: &Writer) -> Vec<ChunkReceipt> {
+    (0..)
+        .map_while(|number| writer.receipt(number).ok())
+        .collect()
 }
 
 /// Meshes one sub-domain.
-fn mesh_one(plan: &Plan, subdomain: SubdomainId) -> Meshed {
+fn mesh_one(plan: &Plan, subdomain: SubdomainId) -> PatchRecord {
     let walked = walks(&plan.site(), subdomain);
     let boundary = walked.ids.iter().map(|&id| id as u32).collect();
-    let seams = walked.on_seam.iter().flatten().any(|&it| it);
+    let is_part = walked.on_seam.iter().flatten().any(|&it| it);
     let loops = Loops {
         nodes: walked.nodes,
         walks: walked.walks,
         size_m: plan.sizes.default_m,
-        lattice_origin: seams.then_some([0.0, 0.0]),
+        lattice_origin: is_part.then_some([0.0, 0.0]),
         on_seam: walked.on_seam,
     };
-    let options = meshing::Options {
-        methods: vec![
-            meshing::patch::Method::Strip,
-            meshing::patch::Method::Indirect,
-        ],
-        good_enough: 0.9,
-    };
-    let meshed = meshing::mesh(&loops, &options).unwrap();
-    let findings = Vec::new();
-    Meshed {
-        record: PatchRecord::new(subdomain, boundary, meshed.patch),
-        findings,
+    match meshing::mesh(&loops, &meshing::Options::all()) {
+        Ok(meshed) => PatchRecord::new(subdomain, boundary, meshed.patch),
+        // `partition` and `boundary` promise planar, even walks: this is our mistake, not the user's.
+        Err(defect) => {
+            let at = plan.domain.grid.origin_m;
+            let place = [0, 1].map(|k| defect.at_m[k] + at[k]);
+            panic!("sub-domain {subdomain} near {place:?}: {}", defect.what)
+        }
     }
 }

@@ -25,6 +25,9 @@ use crate::pipeline::job::Job;
 use crate::pipeline::progress::Stopwatch;
 use crate::pipeline::tiles;
 use crate::seams;
+use crate::spill;
+use crate::spill::Parked;
+use std::path::Path;
 
 /// The whole city before its sub-domains are meshed. Its size follows the input and the number of
 /// nodes on curves, never the number of quads.
@@ -33,24 +36,10 @@ pub struct Plan {
     pub domain: Domain,
     /// Wished sizes.
     pub sizes: SizeWish,
-    /// The line work as meshed: noded, clipped, cleaned, with seams.
-    pub arrangement: Arrangement,
-    /// Its curves and sub-domains.
-    pub partition: Partition,
-    /// What sizes wish of each curve.
-    pub goals: Goals,
-    /// What each curve gets.
-    pub balance: Balance,
+    /// What became of it: arrangement, partition, goals, counts, changes, findings.
+    pub city: Parked,
     /// First global ids of nodes on curves.
     pub first: Vec<u64>,
-    /// Stretches of lines that are not in the mesh.
-    pub dropped: Vec<Dropped>,
-    /// Where clean-up changed the topology.
-    pub changes: Vec<Change>,
-    /// How often and how far.
-    pub tally: Tally,
-    /// What a user should know.
-    pub findings: Vec<Finding>,
 }
 
 impl Plan {
@@ -59,9 +48,9 @@ impl Plan {
         Site {
             domain: &self.domain,
             sizes: &self.sizes,
-            arrangement: &self.arrangement,
-            partition: &self.partition,
-            counts: &self.balance.counts,
+            arrangement: &self.city.arrangement,
+            partition: &self.city.partition,
+            counts: &self.city.balance.counts,
             first: &self.first,
         }
     }
@@ -70,7 +59,7 @@ impl Plan {
     pub fn quads_expected(&self) -> u64 {
         let cell_m2 = self.sizes.default_m * self.sizes.default_m;
         let of = |area_m2: f64| (area_m2 / cell_m2).ceil() as u64;
-        (self.partition.subdomains.iter())
+        (self.city.partition.subdomains.iter())
             .map(|it| of(it.area_m2))
             .sum()
     }
@@ -84,22 +73,22 @@ struct Cleaned {
     tally: Tally,
 }
 
-/// Makes the plan of `job`.
-pub(super) fn plan(job: &Job, watch: &Stopwatch) -> Result<Plan, Error> {
+/// Makes the plan of `job`, or goes on with the one that is parked in `resume_from`.
+pub(super) fn plan(
+    job: &Job,
+    watch: &Stopwatch,
+    resume_from: Option<&Path>,
+) -> Result<Plan, Error> {
     let mut findings = Vec::new();
     let domain = read(job, watch, &mut findings)?;
     let sizes = sizes(job, &domain)?;
-    let cleaned = clean(job, &domain, &sizes, watch, &mut findings)?;
-    let (arrangement, partition) = cut(
-        job,
-        &domain,
-        &sizes,
-        cleaned.arrangement,
-        watch,
-        &mut findings,
-    )?;
-    let (goals, balance) = balance(job, &domain, &sizes, &arrangement, &partition, watch)?;
-    let first = boundary::numbering(&partition, &balance.counts, arrangement.points.len());
+    let parked = resume_from.and_then(|folder| spill::fetch(folder, &key(job, &domain)));
+    let city = match parked {
+        Some(city) => city,
+        None => city(job, &domain, &sizes, watch, findings)?,
+    };
+    let points = city.arrangement.points.len();
+    let first = boundary::numbering(&city.partition, &city.balance.counts, points);
     let nodes = first[first.len() - 1];
     if nodes >= u64::from(u32::MAX) {
         return Err(Error::Job(format!(
@@ -109,11 +98,40 @@ pub(super) fn plan(job: &Job, watch: &Stopwatch) -> Result<Plan, Error> {
     Ok(Plan {
         domain,
         sizes,
+        city,
+        first,
+    })
+}
+
+/// Whose plan it is: the version, the input's bytes, the options that change the result.
+pub(super) fn key(job: &Job, domain: &Domain) -> String {
+    let version = env!("CARGO_PKG_VERSION");
+    format!("{version} {:016x} {}", domain.digest, job.echo())
+}
+
+/// Phases A and B.
+fn city(
+    job: &Job,
+    domain: &Domain,
+    sizes: &SizeWish,
+    watch: &Stopwatch,
+    mut findings: Vec<Finding>,
+) -> Result<Parked, Error> {
+    let cleaned = clean(job, domain, sizes, watch, &mut findings)?;
+    let (arrangement, partition) = cut(
+        job,
+        domain,
+        sizes,
+        cleaned.arrangement,
+        watch,
+        &mut findings,
+    )?;
+    let (goals, balance) = balance(job, domain, sizes, &arrangement, &partition, watch)?;
+    Ok(Parked {
         arrangement,
         partition,
         goals,
         balance,
-        first,
         dropped: cleaned.dropped,
         changes: cleaned.changes,
         tally: cleaned.tally,

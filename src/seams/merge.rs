@@ -16,8 +16,8 @@ const SMALL: f64 = 0.25;
 
 /// For each cell, the part that it belongs to: a cell of it.
 ///
-/// The smallest part joins the neighbour with which it shares the costliest borders, if both fit the
-/// budget; and so on until nothing fits. Parts only grow, so what does not fit never will.
+/// The smallest part joins the neighbour with which it shares the costliest borders, if both fit
+/// the budget; and so on until nothing fits. Parts only grow, so what does not fit never will.
 pub(super) fn merge(quads: &[f64], borders: &[Border], budget: f64, slack: f64) -> Vec<u32> {
     let mut parts = Parts::of(quads, borders);
     // Positive floats sort like their bits.

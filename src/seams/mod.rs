@@ -8,26 +8,27 @@
 //! 3. An end piece meets the edges at its wall node at 50 degrees or more, at 60 or more where it
 //!    splits an edge, and then no nearer to the ends of the edge than 0.8 sizes; it turns off the
 //!    lattice by at most 75 degrees. A wall node has at most one seam.
-//! 4. On the lattice, a seam keeps 1.2 sizes away from all walls, and end pieces keep 1.2 sizes away
-//!    from each other.
-//! 5. Lines, sub-domains below the budget and the area are as before.
+//! 4. On the lattice, a seam keeps 1.2 sizes away from all walls, and end pieces keep 1.2 sizes
+//!    away from each other.
+//! 5. Lines and sub-domains below the budget are as before; the area is, but for the rounding of
+//!    nodes on slanted edges of the rim (less than a cell across).
 //!
 //! # Needs
 //! An arrangement after `cleanup` and its partition.
 //!
 //! # Method
-//! The largest faces of a city are full of slits, islands and bays, so no single straight cut is good
-//! at both ends. We propose many more cuts than needed, all of them good, and drop most of them:
-//! 1. `gaps`: a raster of lattice lines, some twelve pitches or more apart; on each the stretches
-//!    farther than 1.25 sizes from all walls of large sub-domains. Computed from the walls near the
-//!    line, never from lattice points, so that the cost does not follow the number of quads.
+//! The largest faces of a city are full of slits, islands and bays, so no single straight cut is
+//! good at both ends. We propose many more cuts than needed, all of them good, and drop most:
+//! 1. `gaps`: a raster of lattice lines, eight or more pitches apart; on each the stretches farther
+//!    than 1.25 sizes from all walls of large sub-domains. Computed from the walls near the line,
+//!    never from lattice points, so that the cost does not follow the number of quads.
 //! 2. `ends`: where a stretch comes near a wall, the best way to it among its nodes and places on
 //!    its edges; a price for bad angles, bends and lengths.
 //! 3. `propose`: stretches between crossings of the raster and ends at walls are the candidates; of
 //!    two whose ends are near each other the cheaper one stays.
-//! 4. `cells`, `merge`: the candidates divide the faces into small cells; the smallest cell joins the
-//!    neighbour with which it shares the costliest candidates, again and again, while the budget
-//!    holds. What still lies between two parts is kept.
+//! 4. `cells`, `merge`: the candidates divide the faces into small cells; the smallest cell joins
+//!    the neighbour with which it shares the costliest candidates, again and again, while the
+//!    budget holds. What still lies between two parts is kept.
 //! 5. `splice`: kept seams become edges without pieces, walls are split at their ends.
 //!
 //! Faces of which a part stays too large are done again with a finer raster.
@@ -85,8 +86,9 @@ pub struct Seamed {
     pub findings: Vec<Finding>,
 }
 
-/// The most that a part may have, in budgets.
-const SLACK: f64 = 1.5;
+/// The most that a part may have, in budgets, by its area: a mesh has up to 7 % more quads than
+/// area / size², and none may have more than 1.5 budgets.
+const SLACK: f64 = 1.4;
 
 /// Edge length of the lattice, cells: the default size in whole cells. Lattice points are its
 /// multiples; so are those of the parts' meshes.
@@ -96,7 +98,7 @@ pub fn pitch_cells(domain: &Domain, sizes: &SizeWish) -> i32 {
         .clamp(1.0, f64::from(1 << 29)) as i32
 }
 
-/// Cuts every sub-domain of more than 1.5 budgets.
+/// Cuts every sub-domain of more than [`SLACK`] budgets.
 pub fn cut(
     domain: &Domain,
     sizes: &SizeWish,

@@ -8,6 +8,7 @@ use polder::check::check;
 use polder::check::verdict::Verdict;
 use polder::chunk::reader::Mesh;
 use polder::geometry::point::Point;
+use polder::noding::arrangement::Piece;
 use polder::partition::subdomains::OUTSIDE;
 use std::fs;
 
@@ -108,6 +109,13 @@ fn a_moved_node_is_found() {
     );
 }
 
+/// A cell that is convex in local coordinates, by less than projected ones can tell.
+#[test]
+fn a_cell_that_folds_when_projected_is_found() {
+    let found = broken(|it| it.patches[0].interior[0] = [1e-11, 10.0]);
+    assert_eq!(found, ["jacobians"]);
+}
+
 #[test]
 fn a_cell_with_a_node_twice_is_found() {
     let found = broken(|it| it.patches[0].quads[0][1] = 0);
@@ -121,7 +129,9 @@ fn a_cell_that_names_no_node_is_found() {
 
 #[test]
 fn a_missing_cell_is_a_crack() {
-    let found = broken(|it| drop(it.patches[0].quads.pop()));
+    let found = broken(|it| {
+        it.patches[0].quads.pop();
+    });
     assert!(
         ["conforming", "areas", "outline"]
             .iter()
@@ -240,6 +250,29 @@ fn a_line_against_its_direction_is_found() {
         }
     });
     assert_eq!(found, ["lines"]);
+}
+
+/// The wall ends in a hook shorter than the tolerance, which clean-up folded onto its last edge in
+/// the direction of that edge.
+#[test]
+fn a_hook_within_the_tolerance_is_no_tear() {
+    let hook = |station_m: f64| {
+        move |it: &mut Tiny| {
+            it.domain.lines[2].points.push(Point::new(
+                30_000 + (1000.0 * (station_m - 10.0)) as i32,
+                10_000,
+            ));
+            let (from_m, to_m) = (station_m, 10.0);
+            it.frame.pieces.push(Piece {
+                line: 2,
+                from_m,
+                to_m,
+            });
+            *it.frame.piece_start.last_mut().unwrap() += 1;
+        }
+    };
+    assert_eq!(broken(hook(10.8)), [""; 0]);
+    assert_eq!(broken(hook(12.5)), ["lines"]);
 }
 
 #[test]

@@ -1,1 +1,226 @@
-//! Tests of `cleanup`.
+//! Clean-up: promises on random messy line work, small cases as data.
+
+use polder::cleanup;
+use polder::cleanup::Cleaned;
+use polder::cleanup::Options;
+use polder::cleanup::Tolerance;
+use polder::domain::line::Domain;
+use polder::domain::line::Line;
+use polder::domain::line::Role;
+use polder::domain::size::SizeWish;
+use polder::geometry::grid::Grid;
+use polder::geometry::point::Point;
+use polder::noding;
+use polder::noding::arrangement::Arrangement;
+use proptest::prelude::*;
+
+const OPTIONS: Options = Options {
+    tolerance: Tolerance::ShareOfSize(0.5),
+};
+
+/// What a line is, and its points in millimetres.
+type Drawn<'a> = (&'a str, Vec<(i32, i32)>);
+
+/// Lines in millimetres; the first is the boundary, rings named "hole" are holes.
+fn domain(lines: &[(&str, Vec<(i32, i32)>)]) -> Domain {
+    let line = |(source, (what, points)): (usize, &Drawn)| Line {
+        source: source as u32,
+        role: match *what {
+            "boundary" => Role::Boundary,
+            "hole" => Role::Hole,
+            _ => Role::Constraint,
+        },
+        kind: 0,
+        name: String::new(),
+        points: points.iter().map(|&(x, y)| Point::new(x, y)).collect(),
+    };
+    Domain {
+        grid: Grid {
+            origin_m: [0.0, 0.0],
+            cell_m: 0.001,
+        },
+        epsg: None,
+        kinds: vec![String::new()],
+        lines: lines.iter().enumerate().map(line).collect(),
+        digest: 0,
+    }
+}
+
+fn noded(domain: &Domain) -> Arrangement {
+    let tiles = noding::Options {
+        tile_cells: 1 << 20,
+    };
+    noding::clip(domain, noding::node(domain, &tiles)).0
+}
+
+/// Cleans at `size_m` and checks all promises.
+fn cleaned(domain: &Domain, size_m: f64) -> Cleaned {
+    let sizes = SizeWish::uniform(size_m, 1);
+    let input = noded(domain);
+    let cleaned = cleanup::clean(domain, &sizes, input.clone(), &OPTIONS);
+    let verdict = cleanup::check::check(domain, &sizes, &OPTIONS, &input, &cleaned);
+    assert_eq!(verdict, Ok(()));
+    cleaned
+}
+
+fn square(side_mm: i32) -> Vec<(i32, i32)> {
+    vec![
+        (0, 0),
+        (side_mm, 0),
+        (side_mm, side_mm),
+        (0, side_mm),
+        (0, 0),
+    ]
+}
+
+/// A line in 100 m x 100 m: a walk with steps of all lengths, sometimes a near copy of another.
+fn messy_line() -> impl Strategy<Value = Vec<(i32, i32)>> {
+    let start = (0..100_000_i32, 0..100_000_i32);
+    let step = prop_oneof![
+        (-40_000..40_000_i32, -40_000..40_000_i32),
+        (-3_000..3_000_i32, -3_000..3_000_i32),
+        (-30..30_i32, -30..30_i32),
+    ];
+    (start, prop::collection::vec(step, 1..8)).prop_map(|(start, steps)| {
+        let mut points = vec![start];
+        for (dx, dy) in steps {
+            let &(x, y) = points.last().unwrap();
+            if (dx, dy) != (0, 0) {
+                points.push((x + dx, y + dy));
+            }
+        }
+        if points.len() < 2 {
+            points.push((start.0 + 1_000, start.1));
+        }
+        points
+    })
+}
+
+fn messy_domain() -> impl Strategy<Value = Domain> {
+    let copies = prop::collection::vec((any::<prop::sample::Index>(), -900..900_i32), 0..4);
+    (
+        prop::collection::vec(messy_line(), 1..9),
+        copies,
+        0..3_usize,
+    )
+        .prop_map(|(walks, copies, holes)| {
+            let mut lines = vec![("boundary", square(100_000))];
+            for k in 0..holes as i32 {
+                let (x, y, side) = (20_000 + 1_700 * k, 30_000 + 900 * k, 1_500 + 9_000 * k);
+                let ring = square(side).iter().map(|&(u, v)| (x + u, y + v)).collect();
+                lines.push(("hole", ring));
+            }
+            for (index, shift) in copies {
+                let walk = index.get(&walks);
+                lines.push((
+                    "",
+                    walk.iter()
+                        .map(|&(x, y)| (x + shift, y - shift / 3))
+                        .collect(),
+                ));
+            }
+            lines.extend(walks.into_iter().map(|walk| ("", walk)));
+            domain(&lines)
+        })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn promises_hold_on_messy_line_work(domain in messy_domain(), size in 2.0..15.0_f64) {
+        cleaned(&domain, size);
+    }
+
+    #[test]
+    fn same_input_same_bits(domain in messy_domain()) {
+        prop_assert_eq!(cleaned(&domain, 8.0), cleaned(&domain, 8.0));
+    }
+
+    #[test]
+    fn no_tolerance_no_change(domain in messy_domain()) {
+        let off = Options { tolerance: Tolerance::Metres(0.0) };
+        let input = noded(&domain);
+        let result = cleanup::clean(&domain, &SizeWish::uniform(8.0, 1), input.clone(), &off);
+        prop_assert_eq!(result.arrangement, input);
+        prop_assert!(result.dropped.is_empty() && result.changes.is_empty());
+    }
+
+    #[test]
+    fn a_second_run_finds_little_to_do(domain in messy_domain()) {
+        let once = cleaned(&domain, 8.0).arrangement;
+        let sizes = SizeWish::uniform(8.0, 1);
+        let twice = cleanup::clean(&domain, &sizes, once.clone(), &OPTIONS).arrangement;
+        let (before, after) = (once.edges.len(), twice.edges.len());
+        prop_assert!(before.abs_diff(after) <= 2 + before / 10, "{} {}", before, after);
+    }
+}
+
+/// One file a case: `size` metres, then lines `what x y x y ...` in metres. The expectation counts.
+#[test]
+fn small_cases() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/cleanup");
+    let mut cases: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|it| it.unwrap().path())
+        .collect();
+    cases.retain(|path| path.extension().is_some_and(|it| it == "in"));
+    cases.sort();
+    assert!(!cases.is_empty());
+    for case in cases {
+        let text = std::fs::read_to_string(&case).unwrap();
+        if std::env::var_os("POLDER_BLESS").is_some() {
+            std::fs::write(case.with_extension("expect"), outcome(&text) + "\n").unwrap();
+        }
+        let expected = std::fs::read_to_string(case.with_extension("expect")).unwrap();
+        assert_eq!(outcome(&text).trim(), expected.trim(), "{}", case.display());
+    }
+}
+
+fn outcome(text: &str) -> String {
+    let mut size_m = 0.0;
+    let mut lines = Vec::new();
+    for row in text
+        .lines()
+        .filter(|row| !row.is_empty() && !row.starts_with('#'))
+    {
+        let mut words = row.split_whitespace();
+        let what = words.next().unwrap();
+        let values: Vec<f64> = words.map(|word| word.parse().unwrap()).collect();
+        if what == "size" {
+            size_m = values[0];
+            continue;
+        }
+        let mm = |metres: f64| (metres * 1000.0).round() as i32;
+        lines.push((
+            what,
+            values.chunks(2).map(|xy| (mm(xy[0]), mm(xy[1]))).collect(),
+        ));
+    }
+    let result = cleaned(&domain(&lines), size_m);
+    let mut rows = vec![format!(
+        "nodes {} edges {}",
+        result.arrangement.points.len(),
+        result.arrangement.edges.len()
+    )];
+    rows.extend(result.dropped.iter().map(|it| {
+        format!(
+            "dropped {} {:?} {:.1}..{:.1}",
+            it.line, it.reason, it.from_m, it.to_m
+        )
+    }));
+    rows.extend(
+        result
+            .tally
+            .rows
+            .iter()
+            .map(|(what, count, _)| format!("{what} {count}")),
+    );
+    rows.extend(
+        result
+            .findings
+            .iter()
+            .map(|it| format!("finding {}", it.what)),
+    );
+    rows.join("\n")
+}

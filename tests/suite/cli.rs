@@ -291,16 +291,16 @@ fn a_place_that_cannot_be_written_is_exit_3() {
     );
 }
 
-/// A file-size limit stands for a full disk: the first write beyond it fails.
+/// A file-size limit stands for a full disk: the first write beyond it fails. Nothing that looks
+/// whole is left, and with room again the run goes on.
 #[test]
-fn a_full_disk_is_exit_3_and_leaves_nothing() {
+fn a_full_disk_is_exit_3_and_can_be_resumed() {
     let folder = TempDir::new().unwrap();
     let at = folder.path();
     fs::write(at.join("square.geojson"), square("")).unwrap();
-    let script = format!(
-        "trap '' XFSZ; ulimit -f 4; exec {} build square.geojson --size 1 --out out.polder",
-        env!("CARGO_BIN_EXE_polder")
-    );
+    let words = "build square.geojson --size 1 --out out.polder";
+    let polder_path = env!("CARGO_BIN_EXE_polder");
+    let script = format!("trap '' XFSZ; ulimit -f 16; exec {polder_path} {words}");
     let done = Command::new("bash")
         .args(["-c", &script])
         .current_dir(at)
@@ -308,7 +308,12 @@ fn a_full_disk_is_exit_3_and_leaves_nothing() {
         .unwrap();
     let error = String::from_utf8_lossy(&done.stderr);
     assert_eq!(done.status.code(), Some(3), "{error}");
-    assert!(!at.join("out.polder").exists() && !at.join("out.polder.partial").exists());
+    assert!(error.contains("out.polder.partial"), "{error}");
+    assert!(!at.join("out.polder").exists());
+    let words: Vec<&str> = words.split(' ').chain(["--resume"]).collect();
+    assert_eq!(polder(at, &words).status.code(), Some(0));
+    assert!(at.join("out.polder/index").exists());
+    assert!(!at.join("out.polder.partial").exists());
 }
 
 #[test]

@@ -239,21 +239,33 @@ fn even(_: Xy) -> f64 {
 
 /// Shapes that break meshers, with their names.
 pub fn named() -> Vec<(&'static str, Loops)> {
+    let mut cases = narrow_shapes();
+    cases.extend(round_shapes());
+    cases
+}
+
+fn square(s: f64) -> Vec<Xy> {
+    vec![[0.0, 0.0], [s, 0.0], [s, s], [0.0, s]]
+}
+
+fn polygon(points: &[Xy]) -> Draw {
+    let mut draw = Draw::default();
+    draw.ring(points, &even);
+    draw
+}
+
+fn with_lines(outline: &[Xy], lines: &[&[Xy]]) -> Draw {
+    let mut draw = polygon(outline);
+    for line in lines {
+        draw.line(line, &even, true);
+    }
+    draw
+}
+
+/// Wedges, bands, combs, slits.
+fn narrow_shapes() -> Vec<(&'static str, Loops)> {
     let mut cases = Vec::new();
     let mut add = |name: &'static str, draw: Draw| cases.push((name, draw.loops(10.0)));
-    let square = |s: f64| vec![[0.0, 0.0], [s, 0.0], [s, s], [0.0, s]];
-    let polygon = |points: &[Xy]| {
-        let mut draw = Draw::default();
-        draw.ring(points, &even);
-        draw
-    };
-    let with_lines = |outline: &[Xy], lines: &[&[Xy]]| {
-        let mut draw = polygon(outline);
-        for line in lines {
-            draw.line(line, &even, true);
-        }
-        draw
-    };
     let tip = 5.0_f64.to_radians();
     add(
         "wedge of 5 degrees",
@@ -306,6 +318,13 @@ pub fn named() -> Vec<(&'static str, Loops)> {
         "line in a tight box",
         with_lines(&square(12.0), &[&[[4.0, 6.0], [8.0, 6.0]]]),
     );
+    cases
+}
+
+/// Stars, rings, and single quads.
+fn round_shapes() -> Vec<(&'static str, Loops)> {
+    let mut cases = Vec::new();
+    let mut add = |name: &'static str, draw: Draw| cases.push((name, draw.loops(10.0)));
     let rays: Vec<[Xy; 2]> = (0..24)
         .map(|k| {
             let a = TAU * f64::from(k) / 24.0;

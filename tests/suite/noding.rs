@@ -507,7 +507,6 @@ fn small_real_cases() {
 }
 
 #[test]
-#[ignore = "a minute; cargo test --release noding::large -- --ignored --nocapture"]
 fn large_real_cases() {
     for name in [
         "pearl-river-delta.geojson.gz",

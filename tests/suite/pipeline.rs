@@ -29,7 +29,7 @@ fn results_come_in_order_and_memory_is_bounded() {
             let now = alive.fetch_add(1, Ordering::SeqCst) + 1;
             most.fetch_max(now, Ordering::SeqCst);
             // Uneven work: every 50th is slow.
-            let spins = if n % 50 == 0 { 200_000 } else { 50 };
+            let spins = if n.is_multiple_of(50) { 200_000 } else { 50 };
             (0..spins).fold(u64::from(n), |a, b| a.wrapping_mul(31).wrapping_add(b))
         };
         let done = in_order(2000, workers, make, |n, _| {
@@ -86,6 +86,7 @@ fn bytes_of(
         seam_budget_quads: 1500,
         threads,
         force: false,
+        resume: false,
     };
     let outcome = build(&job, &|_| {}).unwrap();
     let broken: Vec<_> = outcome.verdict.broken().collect();

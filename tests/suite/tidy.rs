@@ -102,7 +102,7 @@ fn functions(lines: &[&str]) -> Vec<(usize, usize)> {
         }
         let indent = line.len() - code.len();
         let closes = |it: &&str| it.len() > indent && &it[indent..] == "}" && it.trim() == "}";
-        if let Some(length) = lines[start..].iter().position(|it| closes(it)) {
+        if let Some(length) = lines[start..].iter().position(closes) {
             found.push((start, length + 1));
         }
     }

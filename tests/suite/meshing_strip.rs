@@ -1,8 +1,14 @@
-use crate::geometry::point::Xy;
-use crate::meshing::draft::Draft;
-use crate::meshing::patch::Loops;
-use crate::meshing::strip;
-use crate::meshing::visits::Visits;
+//! Tests of the lattice core and its strip.
+
+use polder::geometry::point::Xy;
+use polder::geometry::quad::scaled_jacobian;
+use polder::meshing::Meshed;
+use polder::meshing::Options;
+use polder::meshing::check::check;
+use polder::meshing::mesh;
+use polder::meshing::patch::Loops;
+use polder::meshing::patch::Method;
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// A polygon resampled at `spacing_m`, corners kept; counts per side rounded.
@@ -42,7 +48,7 @@ fn turned(points: Vec<Xy>, degrees: f64) -> Vec<Xy> {
 /// Loops from positions; equal positions are one node.
 fn loops_of(walks: Vec<Vec<Xy>>, size_m: f64) -> Loops {
     let mut nodes: Vec<Xy> = Vec::new();
-    let mut index = std::collections::BTreeMap::new();
+    let mut index = BTreeMap::new();
     let mut out = Vec::new();
     for walk in &walks {
         let ids: Vec<u32> = walk
@@ -87,30 +93,6 @@ fn slit(walk: &mut Vec<Xy>, at: usize, way: &[Xy]) {
     }
 }
 
-/// Every edge of the draft is used once (exactly the walk edges) or twice in opposite directions.
-fn assert_sound(draft: &Draft, visits: &Visits) {
-    let mut edges = std::collections::BTreeMap::new();
-    for quad in &draft.quads {
-        for k in 0..4 {
-            let clash = edges.insert((quad[k], quad[(k + 1) % 4]), ());
-            assert!(clash.is_none(), "edge used twice in one direction");
-        }
-    }
-    for v in 0..visits.len() as u32 {
-        assert!(
-            edges.contains_key(&(v, visits.next(v))),
-            "walk edge {v} lost"
-        );
-    }
-    for &(a, b) in edges.keys() {
-        let on_walk = (a as usize) < visits.len() && visits.next(a) == b;
-        assert!(
-            on_walk != edges.contains_key(&(b, a)),
-            "edge {a} {b} {on_walk}"
-        );
-    }
-}
-
 fn shapes() -> Vec<(&'static str, Loops)> {
     let h = 1.0;
     let mut list = Vec::new();
@@ -118,15 +100,6 @@ fn shapes() -> Vec<(&'static str, Loops)> {
         "disc",
         loops_of(vec![circle([0.0; 2], 20.0, 126, false)], h),
     ));
-    let l = [
-        [0.0, 0.0],
-        [40.0, 0.0],
-        [40.0, 20.0],
-        [20.0, 20.0],
-        [20.0, 40.0],
-        [0.0, 40.0],
-    ];
-    list.push(("ell", loops_of(vec![turned(sides(&l, h), 30.0)], h)));
     let w = [
         [0.0, 0.0],
         [60.0, 0.0],
@@ -237,45 +210,6 @@ fn seams(shift: f64) -> Loops {
     loops
 }
 
-#[test]
-fn drafts_are_sound() {
-    for (name, loops) in shapes() {
-        let visits = Visits::of(&loops);
-        let draft = strip::mesh(&visits, &loops).expect(name);
-        assert_sound(&draft, &visits);
-        println!(
-            "DRAFT {name} visits {} quads {} settled {} nodes {}",
-            visits.len(),
-            draft.quads.len(),
-            draft.settled,
-            draft.nodes.len()
-        );
-        for p in &draft.nodes {
-            println!("N {} {}", p[0], p[1]);
-        }
-        for q in &draft.quads {
-            println!("Q {} {} {} {}", q[0], q[1], q[2], q[3]);
-        }
-    }
-}
-
-#[test]
-fn bench_disc() {
-    for r in [60.0, 700.0] {
-        let n = (TAU * r / 2.0).round() as usize * 2;
-        let loops = loops_of(vec![circle([0.0; 2], r, n, false)], 1.0);
-        let visits = Visits::of(&loops);
-        let t = std::time::Instant::now();
-        let draft = strip::mesh(&visits, &loops).expect("disc");
-        println!(
-            "BENCH r {r} quads {} settled {} in {:?}",
-            draft.quads.len(),
-            draft.settled,
-            t.elapsed()
-        );
-    }
-}
-
 /// Star-shaped outlines with rough radii and spacings, islands, some of them odd.
 fn rough(seed: u64) -> Loops {
     let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
@@ -315,16 +249,77 @@ fn rough(seed: u64) -> Loops {
     loops_of(walks, 1.0)
 }
 
-#[test]
-fn rough_walks_give_sound_drafts() {
-    let mut made = 0;
-    for seed in 1..400 {
-        let loops = rough(seed);
-        let visits = Visits::of(&loops);
-        if let Some(draft) = strip::mesh(&visits, &loops) {
-            assert_sound(&draft, &visits);
-            made += 1;
-        }
+fn strip(name: &str, loops: &Loops) -> Meshed {
+    let options = Options {
+        methods: vec![Method::Strip],
+        good_enough: 2.0,
+    };
+    let meshed = mesh(loops, &options).unwrap_or_else(|defect| panic!("{name}: {defect:?}"));
+    if let Err(defect) = check(loops, &meshed.patch) {
+        panic!("{name}: {defect:?}");
     }
-    assert!(made > 390, "{made} of 399");
+    meshed
+}
+
+#[test]
+fn shapes_of_the_prototype_reach_its_quality() {
+    for (name, loops) in shapes() {
+        let meshed = strip(name, &loops);
+        assert_eq!(meshed.patch.method, Method::Strip, "{name}");
+        let score = &meshed.score;
+        assert!(score.least >= 0.45, "{name}: least {}", score.least);
+        assert!(score.mean >= 0.965, "{name}: mean {}", score.mean);
+        assert!(
+            score.irregular <= 0.1,
+            "{name}: irregular {}",
+            score.irregular
+        );
+    }
+}
+
+#[test]
+fn aligned_walks_give_a_perfect_lattice() {
+    let corners = [
+        [0.0, 0.0],
+        [40.0, 0.0],
+        [40.0, 20.0],
+        [20.0, 20.0],
+        [20.0, 40.0],
+        [0.0, 40.0],
+    ];
+    let loops = loops_of(vec![turned(sides(&corners, 1.0), 30.0)], 1.0);
+    let meshed = strip("ell", &loops);
+    assert_eq!(meshed.patch.quads.len(), 1200);
+    assert!(meshed.score.least > 0.999999, "{}", meshed.score.least);
+    assert_eq!(meshed.score.irregular, 0.0);
+}
+
+#[test]
+fn seams_do_not_show() {
+    for (name, loops) in [("seams", seams(0.0)), ("ring cut", ring_cut(40))] {
+        let patch = strip(name, &loops).patch;
+        let (mut perfect, mut at_seam) = (0, 0);
+        for quad in &patch.quads {
+            let corners = quad.map(|node| patch.nodes[node as usize]);
+            let on_seam = |p: &&Xy| p[1] == 0.0 && (9.0..19.0).contains(&p[0]);
+            if corners.iter().filter(on_seam).count() == 2 {
+                at_seam += 1;
+                perfect += usize::from(scaled_jacobian(&corners) > 0.999);
+            }
+        }
+        assert!(
+            at_seam >= 9 && perfect == at_seam,
+            "{name}: {perfect} of {at_seam}"
+        );
+    }
+}
+
+#[test]
+fn rough_walks_keep_all_promises() {
+    let made = (1..150).filter(|&seed| {
+        let meshed = strip(&format!("rough {seed}"), &rough(seed));
+        meshed.patch.method != Method::LastResort
+    });
+    let made = made.count();
+    assert!(made >= 140, "{made} of 149");
 }

@@ -1,0 +1,266 @@
+//! Private mirrors of the core types, for bincode alone: a serialisable type is a promise, and
+//! core types make none.
+
+use crate::cleanup::changes::Change;
+use crate::cleanup::changes::Dropped;
+use crate::cleanup::changes::Reason;
+use crate::cleanup::changes::Tally;
+use crate::domain::finding::Finding;
+use crate::geometry::point::Point;
+use crate::intervals::goals::Goals;
+use crate::noding::arrangement::Arrangement;
+use crate::noding::arrangement::Piece;
+use crate::parity::balance::Balance;
+use crate::parity::cuts::Cuts;
+use crate::partition::subdomains::Curve;
+use crate::partition::subdomains::Partition;
+use crate::partition::subdomains::Subdomain;
+use crate::spill::Parked;
+use bincode::Decode;
+use bincode::Encode;
+
+/// Nodes, edges, start and end of chain, left, right, seam.
+type CurveRow = (Vec<u32>, Vec<u32>, u32, u32, bool);
+
+/// Line, from, to.
+type Stretch = (u32, f64, f64);
+
+/// Word, sentence, feature, place.
+type FindingRow = (String, String, Option<u32>, Option<[f64; 2]>);
+
+#[derive(Encode, Decode)]
+pub(super) struct Plan {
+    points: Vec<(i32, i32)>,
+    edges: Vec<[u32; 2]>,
+    piece_start: Vec<u32>,
+    pieces: Vec<Stretch>,
+    curves: Vec<CurveRow>,
+    subdomains: Vec<(Vec<Vec<u32>>, f64)>,
+    goals: (Vec<f64>, Vec<u32>, Vec<u32>, Vec<f64>),
+    balance: BalanceRow,
+    dropped: Vec<(Stretch, u8)>,
+    changes: Vec<(String, i32, i32, f64)>,
+    tally: (Vec<(String, u64, f64)>, [f64; 4]),
+    findings: Vec<FindingRow>,
+}
+
+#[derive(Encode, Decode)]
+struct BalanceRow {
+    counts: Vec<u32>,
+    costs: [f64; 3],
+    proven: bool,
+    odd_share: f64,
+    odd_subdomains: u32,
+    rows: u32,
+    columns: u32,
+    claimed: Option<f64>,
+    branched: bool,
+    events: u64,
+    parent: Vec<u32>,
+    value2: Vec<i64>,
+    set_of: Vec<u32>,
+}
+
+/// Reasons by number; the order of `Reason`.
+const REASONS: [Reason; 4] = [
+    Reason::Clipped,
+    Reason::ShortEnd,
+    Reason::SmallLoop,
+    Reason::BeyondTolerance,
+];
+
+impl Plan {
+    pub(super) fn of(plan: &Parked) -> Plan {
+        let arrangement = &plan.arrangement;
+        let curve = |it: &Curve| {
+            (
+                it.nodes.clone(),
+                it.edges.clone(),
+                it.left,
+                it.right,
+                it.is_seam,
+            )
+        };
+        let goals = plan.goals.clone();
+        let tally = &plan.tally;
+        Plan {
+            points: arrangement.points.iter().map(|p| (p.x, p.y)).collect(),
+            edges: arrangement.edges.clone(),
+            piece_start: arrangement.piece_start.clone(),
+            pieces: arrangement
+                .pieces
+                .iter()
+                .map(|p| (p.line, p.from_m, p.to_m))
+                .collect(),
+            curves: plan.partition.curves.iter().map(curve).collect(),
+            subdomains: (plan.partition.subdomains.iter())
+                .map(|it| (it.walks.clone(), it.area_m2))
+                .collect(),
+            goals: (goals.goal, goals.lower, goals.upper, goals.weight),
+            balance: BalanceRow::of(&plan.balance),
+            dropped: (plan.dropped.iter())
+                .map(|it| ((it.line, it.from_m, it.to_m), it.reason as u8))
+                .collect(),
+            changes: (plan.changes.iter())
+                .map(|it| (it.what.into(), it.at.x, it.at.y, it.moved_m))
+                .collect(),
+            tally: (
+                tally
+                    .rows
+                    .iter()
+                    .map(|it| (it.0.into(), it.1, it.2))
+                    .collect(),
+                [
+                    tally.displacement_max_m,
+                    tally.displacement_p99_m,
+                    tally.length_m,
+                    tally.length_dropped_m,
+                ],
+            ),
+            findings: (plan.findings.iter())
+                .map(|it| (it.what.into(), it.text.clone(), it.feature, it.at_m))
+                .collect(),
+        }
+    }
+
+    /// The plan, or nothing if a number in it has no meaning.
+    pub(super) fn into_parked(self) -> Option<Parked> {
+        let mut words = Words::default();
+        let stretch = |(line, from_m, to_m): Stretch| Piece { line, from_m, to_m };
+        let dropped = (self.dropped.into_iter())
+            .map(|((line, from_m, to_m), reason)| {
+                let reason = *REASONS.get(usize::from(reason))?;
+                Some(Dropped {
+                    line,
+                    reason,
+                    from_m,
+                    to_m,
+                })
+            })
+            .collect::<Option<Vec<_>>>()?;
+        let [
+            displacement_max_m,
+            displacement_p99_m,
+            length_m,
+            length_dropped_m,
+        ] = self.tally.1;
+        Some(Parked {
+            arrangement: Arrangement {
+                points: self
+                    .points
+                    .into_iter()
+                    .map(|(x, y)| Point::new(x, y))
+                    .collect(),
+                edges: self.edges,
+                piece_start: self.piece_start,
+                pieces: self.pieces.into_iter().map(stretch).collect(),
+            },
+            partition: partition(self.curves, self.subdomains),
+            goals: Goals {
+                goal: self.goals.0,
+                lower: self.goals.1,
+                upper: self.goals.2,
+                weight: self.goals.3,
+            },
+            balance: self.balance.into_balance(),
+            dropped,
+            changes: (self.changes.into_iter())
+                .map(|(what, x, y, moved_m)| Change {
+                    what: words.lasting(&what),
+                    at: Point::new(x, y),
+                    moved_m,
+                })
+                .collect(),
+            tally: Tally {
+                rows: (self.tally.0.into_iter())
+                    .map(|(what, count, moved_m)| (words.lasting(&what), count, moved_m))
+                    .collect(),
+                displacement_max_m,
+                displacement_p99_m,
+                length_m,
+                length_dropped_m,
+            },
+            findings: (self.findings.into_iter())
+                .map(|(what, text, feature, at_m)| Finding {
+                    what: words.lasting(&what),
+                    text,
+                    feature,
+                    at_m,
+                })
+                .collect(),
+        })
+    }
+}
+
+fn partition(curves: Vec<CurveRow>, subdomains: Vec<(Vec<Vec<u32>>, f64)>) -> Partition {
+    let curve = |(nodes, edges, left, right, is_seam): CurveRow| Curve {
+        nodes,
+        edges,
+        left,
+        right,
+        is_seam,
+    };
+    let subdomain = |(walks, area_m2)| Subdomain { walks, area_m2 };
+    Partition {
+        curves: curves.into_iter().map(curve).collect(),
+        subdomains: subdomains.into_iter().map(subdomain).collect(),
+    }
+}
+
+impl BalanceRow {
+    fn of(it: &Balance) -> BalanceRow {
+        BalanceRow {
+            counts: it.counts.clone(),
+            costs: [it.base, it.objective, it.bound],
+            proven: it.proven,
+            odd_share: it.odd_share,
+            odd_subdomains: it.odd_subdomains,
+            rows: it.rows,
+            columns: it.columns,
+            claimed: it.claimed,
+            branched: it.branched,
+            events: it.events,
+            parent: it.cuts.parent.clone(),
+            value2: it.cuts.value2.clone(),
+            set_of: it.cuts.set_of.clone(),
+        }
+    }
+
+    fn into_balance(self) -> Balance {
+        let [base, objective, bound] = self.costs;
+        Balance {
+            counts: self.counts,
+            base,
+            objective,
+            bound,
+            proven: self.proven,
+            odd_share: self.odd_share,
+            odd_subdomains: self.odd_subdomains,
+            rows: self.rows,
+            columns: self.columns,
+            claimed: self.claimed,
+            branched: self.branched,
+            events: self.events,
+            cuts: Cuts {
+                parent: self.parent,
+                value2: self.value2,
+                set_of: self.set_of,
+            },
+        }
+    }
+}
+
+/// Words that live as long as the process: the few dozen kinds of findings and changes.
+#[derive(Default)]
+struct Words(Vec<&'static str>);
+
+impl Words {
+    fn lasting(&mut self, word: &str) -> &'static str {
+        if let Some(known) = self.0.iter().find(|it| **it == word) {
+            return known;
+        }
+        let lasting: &'static str = Box::leak(word.to_string().into_boxed_str());
+        self.0.push(lasting);
+        lasting
+    }
+}
