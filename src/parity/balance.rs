@@ -51,8 +51,6 @@ pub struct Structure {
     pub price: f64,
     /// What any even counts cost at least, with that price; 0 if nothing was wished for.
     pub bound: f64,
-    /// The counts, moved out to the balance.
-    pub(crate) counts: Vec<u32>,
 }
 
 impl Balance {
@@ -65,9 +63,9 @@ impl Balance {
         (self.optimum - self.bound) / (self.optimum - self.base)
     }
 
-    /// Takes the counts of the structure over, with what they cost.
-    pub(crate) fn with_counts(mut self, goals: &Goals) -> Balance {
-        self.counts = std::mem::take(&mut self.structure.counts);
+    /// The balance with these counts, and what they cost.
+    pub(crate) fn with_counts(mut self, goals: &Goals, counts: Vec<u32>) -> Balance {
+        self.counts = counts;
         self.objective = total_units(goals, &self.counts) as f64 * COST_UNIT;
         let odd = self.counts.iter().filter(|count| *count % 2 == 1).count();
         self.odd_share = odd as f64 / self.counts.len().max(1) as f64;

@@ -136,8 +136,10 @@ pub fn balance(partition: &Partition, goals: &Goals, options: &Options) -> Resul
     balance.proven = optimum == bound;
     balance.odd_subdomains = graph.odd.iter().filter(|odd| **odd).count() as u32;
     balance.cuts = join.cuts;
-    balance.structure = structure::prefer_equal_sides(partition, goals, &near, even, options)?;
-    Ok(balance.with_counts(goals))
+    let (structure, counts) =
+        structure::prefer_equal_sides(partition, goals, &near, even, options)?;
+    balance.structure = structure;
+    Ok(balance.with_counts(goals, counts))
 }
 
 /// A choice of edges after which every node is even, and how far from the least it can be.

@@ -34,7 +34,7 @@ pub fn prefer_equal_sides(
     near: &[u32],
     even: Vec<u32>,
     options: &Options,
-) -> Result<Structure, Error> {
+) -> Result<(Structure, Vec<u32>), Error> {
     let worth = units(options.worth);
     let mut best = Draft::new(partition, goals, even, worth);
     let mut bound = 0;
@@ -56,13 +56,13 @@ pub fn prefer_equal_sides(
             }
         }
     }
-    Ok(Structure {
+    let structure = Structure {
         blocks: goals.blocks.len() as u32,
         mapped: best.mapped(),
         price: best.price() as f64 * COST_UNIT,
         bound: bound as f64 * COST_UNIT,
-        counts: best.counts,
-    })
+    };
+    Ok((structure, best.counts))
 }
 
 /// Counts in the making, with the differences of all blocks.
