@@ -300,7 +300,7 @@ fn balance(
                 events_max: 1 << 31,
                 nodes_max: 1000,
                 rows_max: 20_000,
-                worth: 0.1,
+                worth: 0.0,
                 rounds_max: 20,
             },
         )?;
