@@ -36,6 +36,8 @@ fn row(family: &str, subdomains: usize) {
         events_max: u64::MAX,
         nodes_max: 1000,
         rows_max: 0,
+        worth: 0.0,
+        rounds_max: 20,
     };
     let start = Instant::now();
     let made = parity::balance(&partition, &goals, &alone).expect("a feasible city");

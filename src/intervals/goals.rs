@@ -1,5 +1,7 @@
 //! Goals: what the sizes wish of each curve, before parity.
 
+use crate::partition::subdomains::SubdomainId;
+
 /// One entry a curve. The count n of a curve must satisfy `lower <= n <= upper`; what it costs is
 /// `cost(curve, n)`, convex in n.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -12,6 +14,17 @@ pub struct Goals {
     pub upper: Vec<u32>,
     /// Weight of the curve's deviation; 1 unless said otherwise.
     pub weight: Vec<f64>,
+    /// Sub-domains with four sides, by id: they can be mapped if opposite sides have equal counts.
+    pub blocks: Vec<Block>,
+}
+
+/// A sub-domain with one walk, four corners and no reflex one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Block {
+    /// The sub-domain.
+    pub subdomain: SubdomainId,
+    /// The curves of each side, in order around; each lies on it as a whole. None occurs twice.
+    pub sides: [Vec<u32>; 4],
 }
 
 impl Goals {

@@ -1,10 +1,10 @@
 //! The least counts that shapes need, folded into lower bounds of curves.
 
-use crate::geometry::point::Point;
 use crate::intervals::Options;
 use crate::intervals::goals::Goals;
+use crate::intervals::sides::Side;
+use crate::intervals::sides::Walk;
 use crate::noding::arrangement::Arrangement;
-use crate::partition::subdomains::HalfCurve;
 use crate::partition::subdomains::Partition;
 use crate::partition::subdomains::Subdomain;
 
@@ -20,7 +20,9 @@ pub fn raise(
 ) {
     for subdomain in &partition.subdomains {
         if let [walk] = subdomain.walks.as_slice() {
-            let sides = sides(walk, arrangement, partition, options.corner_deg);
+            let walk = Walk::of(walk, arrangement, partition);
+            let corners = walk.entries(|turn_deg| turn_deg.abs() > options.corner_deg);
+            let sides = walk.sides(&corners);
             // One node on a side of a triangle or a lune would make an element with a straight
             // angle at a corner; four and more sides carry quads with one interval each.
             if sides.len() == 2 || sides.len() == 3 {
@@ -31,61 +33,6 @@ pub fn raise(
         }
         raise_total(goals, partition, subdomain);
     }
-}
-
-/// A stretch of a walk between two corners: (curve, edges of it on this side), in order.
-type Side = Vec<(u32, u32)>;
-
-/// The sides of a closed walk; empty if it has no corner.
-fn sides(
-    walk: &[HalfCurve],
-    arrangement: &Arrangement,
-    partition: &Partition,
-    corner_deg: f64,
-) -> Vec<Side> {
-    let mut steps: Vec<(u32, Point)> = Vec::new();
-    for &half in walk {
-        let nodes = &partition.curves[(half >> 1) as usize].nodes;
-        let point = |k: usize| arrangement.points[nodes[k] as usize];
-        for k in 0..nodes.len() - 1 {
-            let from = if half & 1 == 0 {
-                k
-            } else {
-                nodes.len() - 1 - k
-            };
-            steps.push((half >> 1, point(from)));
-        }
-    }
-    let n = steps.len();
-    let is_corner = |k: usize| {
-        let (before, at, after) = (steps[(k + n - 1) % n].1, steps[k].1, steps[(k + 1) % n].1);
-        turn_deg(before, at, after) > corner_deg
-    };
-    let Some(first) = (0..n).find(|&k| is_corner(k)) else {
-        return Vec::new();
-    };
-    let mut sides: Vec<Side> = Vec::new();
-    for k in (first..n).chain(0..first) {
-        if is_corner(k) {
-            sides.push(Side::new());
-        }
-        let side = sides.last_mut().expect("the first step starts a side");
-        match side.last_mut() {
-            Some((curve, edges)) if *curve == steps[k].0 => *edges += 1,
-            _ => side.push((steps[k].0, 1)),
-        }
-    }
-    sides
-}
-
-/// Change of direction at `at`, degrees, without sign.
-fn turn_deg(before: Point, at: Point, after: Point) -> f64 {
-    let step = |a: Point, b: Point| (f64::from(b.x - a.x), f64::from(b.y - a.y));
-    let ((ux, uy), (vx, vy)) = (step(before, at), step(at, after));
-    (ux * vy - uy * vx)
-        .atan2(ux * vx + uy * vy)
-        .abs()
-        .to_degrees()
 }
 
 /// Raises the longest free curve of a side until the side has `least` intervals for certain.

@@ -16,10 +16,12 @@
 //! # Method
 //! 1. `wish`: an edge's goal is its length over its size, the smallest among the kinds of its
 //!    pieces (the default along seams). A straight seam between lattice nodes is fixed.
-//! 2. `minima`: the least counts that a shape needs, folded into the bounds of its longest curves,
+//! 2. `minima` over `sides`: the least counts that a shape needs, folded into the bounds of its longest curves,
 //!    so that parity stays a minimum-weight T-join and needs no rows of another kind. A fold is
 //!    sufficient, not necessary: it may forbid a split that another share of the side would allow.
-//! 3. Costs are those of [`Goals::cost`]: convex, relative, zero at the goal.
+//! 3. `blocks`: the sub-domains with four sides, for which `parity` wishes equal counts on opposite
+//!    sides, because mapped patches are the best ones.
+//! 4. Costs are those of [`Goals::cost`]: convex, relative, zero at the goal.
 //!
 //! # Cost
 //! O(edges + half-curves), 24 bytes a curve.
@@ -34,9 +36,11 @@ use crate::intervals::wish::EdgeWish;
 use crate::noding::arrangement::Arrangement;
 use crate::partition::subdomains::Partition;
 
+mod blocks;
 pub mod check;
 pub mod goals;
 mod minima;
+mod sides;
 pub mod wish;
 
 /// How goals and bounds are made.
@@ -47,6 +51,9 @@ pub struct Options {
     /// Largest count over goal, above 1; three more are always allowed, so that short curves are
     /// free to change parity.
     pub upper_ratio: f64,
+    /// A four-sided sub-domain may be a block if opposite wishes differ at most by this ratio (or
+    /// by one interval).
+    pub block_ratio: f64,
 }
 
 /// The goals of all curves.
@@ -65,6 +72,7 @@ pub fn plan(
         push_curve(&mut goals, &edges, options);
     }
     minima::raise(&mut goals, arrangement, partition, options);
+    goals.blocks = blocks::blocks(&goals, arrangement, partition, options);
     goals
 }
 

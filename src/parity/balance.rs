@@ -1,6 +1,9 @@
 //! The counts, what they cost, and the proof that it could not be less.
 
+use crate::intervals::goals::Goals;
 use crate::parity::cuts::Cuts;
+use crate::parity::programme::COST_UNIT;
+use crate::parity::programme::total_units;
 
 /// A count for each curve, with its certificate.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -9,12 +12,16 @@ pub struct Balance {
     pub counts: Vec<u32>,
     /// What free rounding costs, parity ignored: nobody can do better.
     pub base: f64,
-    /// What `counts` cost.
+    /// What `counts` cost: the optimum, and what equal opposite sides of blocks cost beyond it.
     pub objective: f64,
+    /// What the best counts found cost, the wishes of blocks ignored.
+    pub optimum: f64,
     /// What any counts with all sub-domains even cost at least; proven by `cuts`.
     pub bound: f64,
-    /// True if `objective` is `bound`: exact in whole cost units.
+    /// True if `optimum` is `bound`: exact in whole cost units.
     pub proven: bool,
+    /// What was done for the sake of equal opposite sides.
+    pub structure: Structure,
     /// Share of odd counts: about a half, unless something rounds to even.
     pub odd_share: f64,
     /// Sub-domains that free rounding leaves odd.
@@ -33,13 +40,35 @@ pub struct Balance {
     pub cuts: Cuts,
 }
 
+/// Blocks whose opposite sides were made equal; not part of what is proven.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Structure {
+    /// Blocks, and how many have equal opposite sides.
+    pub blocks: u32,
+    /// See `blocks`.
+    pub mapped: u32,
+    /// Price of the differences that are left.
+    pub price: f64,
+    /// What any even counts cost at least, with that price; 0 if nothing was wished for.
+    pub bound: f64,
+}
+
 impl Balance {
-    /// (objective - bound) / objective with the cost of free rounding subtracted from both; 0 if
+    /// (optimum - bound) / optimum with the cost of free rounding subtracted from both; 0 if
     /// parity costs nothing.
     pub fn gap(&self) -> f64 {
         if self.proven {
             return 0.0;
         }
-        (self.objective - self.bound) / (self.objective - self.base)
+        (self.optimum - self.bound) / (self.optimum - self.base)
+    }
+
+    /// The balance with these counts, and what they cost.
+    pub(crate) fn with_counts(mut self, goals: &Goals, counts: Vec<u32>) -> Balance {
+        self.counts = counts;
+        self.objective = total_units(goals, &self.counts) as f64 * COST_UNIT;
+        let odd = self.counts.iter().filter(|count| *count % 2 == 1).count();
+        self.odd_share = odd as f64 / self.counts.len().max(1) as f64;
+        self
     }
 }

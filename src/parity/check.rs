@@ -2,9 +2,12 @@
 
 use crate::intervals::goals::Goals;
 use crate::parity::balance::Balance;
-use crate::parity::programme::COST_UNIT;
+use crate::parity::error::Error;
 use crate::parity::programme::Programme;
 use crate::parity::programme::cost_units;
+use crate::parity::programme::free_rounding;
+use crate::parity::programme::total_units;
+use crate::parity::programme::units;
 use crate::partition::subdomains::OUTSIDE;
 use crate::partition::subdomains::Partition;
 
@@ -32,15 +35,16 @@ pub fn check(partition: &Partition, goals: &Goals, balance: &Balance) -> Result<
         return Err(format!("sub-domain {id}: {} intervals", total[id]));
     }
     let bound = bound_units(partition, goals, balance)?;
-    let [said, bound_said] = [balance.objective, balance.bound].map(|v| (v / COST_UNIT).round());
-    if said != objective as f64 || bound_said != bound as f64 {
+    let [said, bound_said, optimum] =
+        [balance.objective, balance.bound, balance.optimum].map(units);
+    if said != objective || bound_said != bound {
         return Err(format!(
             "{said} and {bound_said} said, {objective} and {bound} found"
         ));
     }
-    if bound > objective || balance.proven != (bound == objective) {
+    if bound > optimum || optimum > objective || balance.proven != (bound == optimum) {
         return Err(format!(
-            "bound {bound}, objective {objective}: proven {}",
+            "bound {bound}, optimum {optimum}, objective {objective}: proven {}",
             balance.proven
         ));
     }
@@ -49,10 +53,12 @@ pub fn check(partition: &Partition, goals: &Goals, balance: &Balance) -> Result<
 
 /// The bound that the certificate proves, in whole cost units.
 fn bound_units(partition: &Partition, goals: &Goals, balance: &Balance) -> Result<i64, String> {
-    let programme = Programme::new(partition, goals).map_err(|error| error.to_string())?;
+    let said = |error: Error| error.to_string();
+    let near = free_rounding(goals).map_err(said)?;
+    let programme = Programme::new(partition, goals, &near, 0).map_err(said)?;
     let cuts = &balance.cuts;
     let sets = cuts.parent.len();
-    if cuts.set_of.len() != partition.subdomains.len() || cuts.value2.len() != sets {
+    if cuts.set_of.len() != programme.graph.odd.len() || cuts.value2.len() != sets {
         return Err("the certificate has arrays of other lengths".into());
     }
     let mut odd = vec![false; sets];
@@ -82,6 +88,6 @@ fn bound_units(partition: &Partition, goals: &Goals, balance: &Balance) -> Resul
     {
         Some(edge) => Err(format!("curve {} pays more than it costs", edge.label)),
         // Rounded up: costs are whole.
-        None => Ok(programme.base + (cuts.bound2() + 1) / 2),
+        None => Ok(total_units(goals, &near) + (cuts.bound2() + 1) / 2),
     }
 }

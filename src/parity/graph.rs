@@ -90,8 +90,8 @@ impl Graph {
     }
 
     /// A component without a way to the outside and with an odd number of odd nodes, which no
-    /// choice of edges can make even: (its least node, its number of nodes).
-    pub fn hopeless(&self) -> Option<(u32, u32)> {
+    /// choice of edges can make even: (its least node, how many of its nodes are below `counted`).
+    pub fn hopeless(&self, counted: u32) -> Option<(u32, u32)> {
         let n = self.odd.len();
         let mut seen = vec![false; n];
         let mut stack = Vec::new();
@@ -103,7 +103,7 @@ impl Graph {
             seen[seed as usize] = true;
             stack.push(seed);
             while let Some(node) = stack.pop() {
-                size += 1;
+                size += u32::from(node < counted);
                 odd ^= self.odd[node as usize];
                 for next in self.neighbours(node) {
                     if next.node == OUTSIDE {

@@ -290,6 +290,7 @@ fn balance(
         let options = intervals::Options {
             corner_deg: job.corner_deg,
             upper_ratio: 2.5,
+            block_ratio: 1.25,
         };
         let goals = intervals::plan(domain, sizes, arrangement, partition, &options);
         let balance = parity::balance(
@@ -299,6 +300,8 @@ fn balance(
                 events_max: 1 << 31,
                 nodes_max: 1000,
                 rows_max: 20_000,
+                worth: 0.0,
+                rounds_max: 20,
             },
         )?;
         let note = format!("gap {:.4} %, {} rows", 100.0 * balance.gap(), balance.rows);

@@ -7,10 +7,12 @@ use crate::cleanup::changes::Reason;
 use crate::cleanup::changes::Tally;
 use crate::domain::finding::Finding;
 use crate::geometry::point::Point;
+use crate::intervals::goals::Block;
 use crate::intervals::goals::Goals;
 use crate::noding::arrangement::Arrangement;
 use crate::noding::arrangement::Piece;
 use crate::parity::balance::Balance;
+use crate::parity::balance::Structure;
 use crate::parity::cuts::Cuts;
 use crate::partition::subdomains::Curve;
 use crate::partition::subdomains::Partition;
@@ -37,6 +39,7 @@ pub(super) struct Plan {
     curves: Vec<CurveRow>,
     subdomains: Vec<(Vec<Vec<u32>>, f64)>,
     goals: (Vec<f64>, Vec<u32>, Vec<u32>, Vec<f64>),
+    blocks: Vec<(u32, [Vec<u32>; 4])>,
     balance: BalanceRow,
     dropped: Vec<(Stretch, u8)>,
     changes: Vec<(String, i32, i32, f64)>,
@@ -47,7 +50,8 @@ pub(super) struct Plan {
 #[derive(Encode, Decode)]
 struct BalanceRow {
     counts: Vec<u32>,
-    costs: [f64; 3],
+    costs: [f64; 4],
+    structure: (u32, u32, f64, f64),
     proven: bool,
     odd_share: f64,
     odd_subdomains: u32,
@@ -97,6 +101,9 @@ impl Plan {
                 .map(|it| (it.walks.clone(), it.area_m2))
                 .collect(),
             goals: (goals.goal, goals.lower, goals.upper, goals.weight),
+            blocks: (goals.blocks.into_iter())
+                .map(|it| (it.subdomain, it.sides))
+                .collect(),
             balance: BalanceRow::of(&plan.balance),
             dropped: (plan.dropped.iter())
                 .map(|it| ((it.line, it.from_m, it.to_m), it.reason as u8))
@@ -161,6 +168,9 @@ impl Plan {
                 lower: self.goals.1,
                 upper: self.goals.2,
                 weight: self.goals.3,
+                blocks: (self.blocks.into_iter())
+                    .map(|(subdomain, sides)| Block { subdomain, sides })
+                    .collect(),
             },
             balance: self.balance.into_balance(),
             dropped,
@@ -211,7 +221,13 @@ impl BalanceRow {
     fn of(it: &Balance) -> BalanceRow {
         BalanceRow {
             counts: it.counts.clone(),
-            costs: [it.base, it.objective, it.bound],
+            costs: [it.base, it.objective, it.optimum, it.bound],
+            structure: (
+                it.structure.blocks,
+                it.structure.mapped,
+                it.structure.price,
+                it.structure.bound,
+            ),
             proven: it.proven,
             odd_share: it.odd_share,
             odd_subdomains: it.odd_subdomains,
@@ -227,13 +243,21 @@ impl BalanceRow {
     }
 
     fn into_balance(self) -> Balance {
-        let [base, objective, bound] = self.costs;
+        let [base, objective, optimum, bound] = self.costs;
+        let (blocks, mapped, price, structure_bound) = self.structure;
         Balance {
             counts: self.counts,
             base,
             objective,
+            optimum,
             bound,
             proven: self.proven,
+            structure: Structure {
+                blocks,
+                mapped,
+                price,
+                bound: structure_bound,
+            },
             odd_share: self.odd_share,
             odd_subdomains: self.odd_subdomains,
             rows: self.rows,

@@ -19,6 +19,7 @@ use proptest::prelude::*;
 const OPTIONS: Options = Options {
     corner_deg: 30.0,
     upper_ratio: 2.5,
+    block_ratio: 1.25,
 };
 
 /// A boundary ring and lines of kind 1 (`fine`) on a grid of 1 m, noded and walked.

@@ -1,5 +1,6 @@
 //! Tests of `parity`.
 
+use polder::intervals::goals::Block;
 use polder::intervals::goals::Goals;
 use polder::parity;
 use polder::parity::Options;
@@ -21,6 +22,8 @@ const OPTIONS: Options = Options {
     events_max: u64::MAX,
     nodes_max: 100,
     rows_max: 20_000,
+    worth: 0.0,
+    rounds_max: 20,
 };
 
 /// A partition as parity sees it: only the sides of curves.
@@ -44,6 +47,7 @@ fn goals(goal: &[f64], spread: u32) -> Goals {
         lower: vec![1; goal.len()],
         upper: goal.iter().map(|g| g.ceil() as u32 + spread).collect(),
         weight: vec![1.0; goal.len()],
+        blocks: Vec::new(),
     }
 }
 
@@ -108,6 +112,56 @@ fn city(side: usize, seed: u64) -> (Partition, Goals) {
     }
     let subdomains = block[side * side - 1] as usize + 1;
     (partition(subdomains, &sides), goals(&goal, 3))
+}
+
+/// `side` x `side` blocks, all of them four-sided with one curve a side.
+fn blocks(side: usize, seed: u64) -> (Partition, Goals) {
+    let mut dice = Dice(seed);
+    let across = side * (side + 1);
+    let at = |x: usize, y: usize| match x < side && y < side {
+        true => (y * side + x) as SubdomainId,
+        false => OUTSIDE,
+    };
+    // Streets from west to east, then from south to north.
+    let (mut sides, mut goal) = (Vec::new(), Vec::new());
+    for k in 0..2 * across {
+        let (x, y) = (k % across % side, k % across / side);
+        sides.push(match k < across {
+            true => (at(x, y), if y == 0 { OUTSIDE } else { at(x, y - 1) }),
+            false => (at(y, x), if y == 0 { OUTSIDE } else { at(y - 1, x) }),
+        });
+        goal.push(3.0 + dice.roll());
+    }
+    let mut g = goals(&goal, 3);
+    for id in 0..side * side {
+        let (x, y) = (id % side, id / side);
+        let street = |x: usize, y: usize| vec![(y * side + x) as u32];
+        let avenue = |x: usize, y: usize| vec![(across + x * side + y) as u32];
+        g.blocks.push(Block {
+            subdomain: id as u32,
+            sides: [
+                street(x, y),
+                avenue(x + 1, y),
+                street(x, y + 1),
+                avenue(x, y),
+            ],
+        });
+    }
+    (partition(side * side, &sides), g)
+}
+
+/// Price of unequal opposite sides at a worth of 1.
+fn price(goals: &Goals, counts: &[u32]) -> f64 {
+    let total = |side: &Vec<u32>| {
+        side.iter()
+            .map(|&c| f64::from(counts[c as usize]))
+            .sum::<f64>()
+    };
+    let larger = |block: &Block| {
+        let [a, b, c, d] = block.sides.each_ref().map(total);
+        (a - c).abs().max((b - d).abs())
+    };
+    goals.blocks.iter().map(larger).sum()
 }
 
 /// The slow twin: all counts within bounds.
@@ -301,7 +355,7 @@ fn small_joins_are_optimal() {
         let graph = random_graph(&mut dice, nodes, edges, [3, 10, 1000][round % 3]);
         match least_choice(&graph) {
             Some(least) => assert_eq!(join_weight(&graph), least, "round {round}: {graph:?}"),
-            None => assert!(graph.hopeless().is_some()),
+            None => assert!(graph.hopeless(u32::MAX).is_some()),
         }
     }
 }
@@ -314,7 +368,7 @@ fn middle_sized_joins_prove_themselves() {
         let nodes = 20 + dice.below(200);
         let edges = nodes + dice.below(3 * nodes);
         let graph = random_graph(&mut dice, nodes, edges, [2, 5, 100, 100_000][round % 4]);
-        if graph.hopeless().is_none() {
+        if graph.hopeless(u32::MAX).is_none() {
             assert!(join_weight(&graph) <= spanning_tree(&graph));
         }
     }
@@ -346,6 +400,40 @@ fn a_certificate_that_claims_too_much_is_refused() {
     let mut made = balanced(&p, &g);
     made.cuts.value2[0] += 2;
     assert!(check(&p, &g, &made).is_err());
+}
+
+#[test]
+fn equal_sides_are_worth_their_price() {
+    let (p, g) = blocks(12, 4);
+    let plain = balanced(&p, &g);
+    assert_eq!(plain.objective, plain.optimum);
+    for worth in [0.05, 0.2, 1.0] {
+        let made = parity::balance(&p, &g, &Options { worth, ..OPTIONS }).unwrap();
+        check(&p, &g, &made).unwrap();
+        let (before, after) = (price(&g, &plain.counts), price(&g, &made.counts));
+        assert!((made.structure.price - worth * after).abs() < 1e-3);
+        let total = made.objective + made.structure.price;
+        assert!(total <= plain.objective + worth * before + 1e-9);
+        assert!(total >= made.structure.bound - 1e-9);
+        assert!(made.structure.mapped >= plain.structure.mapped);
+        assert_eq!(made.optimum, plain.optimum);
+    }
+}
+
+#[test]
+fn blocks_that_are_dear_are_all_mapped() {
+    let (p, g) = blocks(8, 9);
+    let made = parity::balance(
+        &p,
+        &g,
+        &Options {
+            worth: 5.0,
+            ..OPTIONS
+        },
+    )
+    .unwrap();
+    check(&p, &g, &made).unwrap();
+    assert_eq!(made.structure.mapped, 64, "price {}", made.structure.price);
 }
 
 #[test]
