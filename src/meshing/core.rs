@@ -21,7 +21,7 @@ const LEAST_ISLAND: usize = 6;
 /// Rows of core cells next to the strip that the finish may still move. More gain nothing.
 const ZONE_ROWS: usize = 3;
 /// Beyond this the map would not be small any more, cells.
-const LARGEST_MAP: f64 = 3e8;
+const LARGEST_MAP: f64 = 1e8;
 
 /// What a cell of the map is.
 pub(crate) mod cell {

@@ -126,7 +126,9 @@ fn propose(
     if angle <= 0.0 {
         angle += std::f64::consts::TAU;
     }
-    let spacing_m = 0.5 * (walk.length_m[k] + walk.length_m[walk.before[k] as usize]);
+    let around_m = 0.5 * (walk.length_m[k] + walk.length_m[walk.before[k] as usize]);
+    // Searches reach as far as this, so it must not follow a single very long edge.
+    let spacing_m = around_m.min(4.0 * size_m);
     let offset_m = row_offset_m(spacing_m, size_m);
     let half = (0.5 * angle).sin();
     let (rank, fan): (Rank, &[(f64, f64)]) = match angle.to_degrees() {
