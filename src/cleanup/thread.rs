@@ -111,7 +111,8 @@ fn thread_one(
             || (dropped.iter()).any(|it| it.0 <= gap_m.0 + SAME_M && it.1 >= gap_m.1 - SAME_M);
         if last.end == next.start {
             made.push(next);
-        } else if last.edge == next.edge && last.start == next.start {
+        } else if last.edge == next.edge && last.start == next.start && gap_m.1 <= gap_m.0 + SAME_M
+        {
             last.high_m = last.high_m.max(next.high_m);
         } else if gap_m.1 > gap_m.0 + SAME_M && is_known() {
             made.push(next);

@@ -12,6 +12,8 @@ use crate::meshing::draft::Draft;
 use crate::meshing::last_resort;
 use crate::meshing::pairing;
 use crate::meshing::scatter::scatter;
+use crate::meshing::triangulate::NONE;
+use crate::meshing::triangulate::Triangles;
 use crate::meshing::triangulate::triangulate;
 use crate::meshing::visits::Visits;
 use rustc_hash::FxHashMap;
@@ -139,7 +141,7 @@ fn fill(draft: &mut Draft, visits: &Visits, hole: &[u32], size_m: f64) -> Option
     let scattered = scatter(&outline, size_m);
     let mut best: Option<(f64, Draft)> = None;
     for inner in [&[][..], &scattered[..]] {
-        let Some(triangles) = triangulate(&outline, inner) else {
+        let Some(triangles) = triangulate(&outline, inner).filter(is_connected) else {
             continue;
         };
         let made = last_resort::mesh(&pairing::join(&triangles, outline.len()));
@@ -159,6 +161,24 @@ fn fill(draft: &mut Draft, visits: &Visits, hole: &[u32], size_m: f64) -> Option
     let quads = made.quads.iter().map(|quad| quad.map(name)).collect();
     draft.nodes.extend(&made.nodes[names.len()..]);
     Some(quads)
+}
+
+/// True if one can go from any triangle to any other: two parts that meet in a node may be odd each.
+fn is_connected(triangles: &Triangles) -> bool {
+    let mut seen = vec![false; triangles.neighbours.len()];
+    let mut open = vec![0_u32];
+    let mut count = 0;
+    while let Some(triangle) = open.pop() {
+        let Some(seen) = seen.get_mut(triangle as usize) else {
+            continue;
+        };
+        if !std::mem::replace(seen, true) {
+            count += 1;
+            let around = triangles.neighbours[triangle as usize];
+            open.extend(around.iter().filter(|&&it| it != NONE));
+        }
+    }
+    count == triangles.neighbours.len()
 }
 
 /// The outline of `hole` as walks with the hole on the left, and the node of the draft at each

@@ -11,6 +11,9 @@ use crossbeam::channel::Receiver;
 use crossbeam::channel::Sender;
 use crossbeam::channel::bounded;
 use std::collections::BTreeMap;
+use std::panic::AssertUnwindSafe;
+use std::panic::catch_unwind;
+use std::panic::resume_unwind;
 use std::sync::atomic::AtomicBool;
 use std::sync::atomic::AtomicU32;
 use std::sync::atomic::Ordering;
@@ -32,13 +35,18 @@ pub fn in_order<T: Send, E: Send>(
     for _ in 0..permits {
         give_permit.send(()).expect("the queue holds all permits");
     }
-    let (send, receive) = bounded::<(u32, T)>(permits);
+    let (send, receive) = bounded::<(u32, std::thread::Result<T>)>(permits);
     let next = AtomicU32::new(0);
     let stopped = AtomicBool::new(false);
     let work = || {
         while get_permit.recv().is_ok() && !stopped.load(Ordering::Relaxed) {
             let n = next.fetch_add(1, Ordering::Relaxed);
-            if n >= count || send.send((n, make(n))).is_err() {
+            if n >= count {
+                break;
+            }
+            // A panic goes to the writer too: it must not wait for a result that never comes.
+            let result = catch_unwind(AssertUnwindSafe(|| make(n)));
+            if send.send((n, result)).is_err() {
                 break;
             }
         }
@@ -47,25 +55,26 @@ pub fn in_order<T: Send, E: Send>(
     std::thread::scope(|threads| {
         let (give_permit, stopped) = (&give_permit, &stopped);
         let writer = threads.spawn(move || {
-            let outcome = take_in_order(count, &receive, give_permit, &mut take);
+            let writing = || take_in_order(count, &receive, give_permit, &mut take);
+            let outcome = catch_unwind(AssertUnwindSafe(writing));
             stopped.store(true, Ordering::Relaxed);
             for _ in 0..permits {
                 let _ = give_permit.try_send(());
             }
-            outcome
+            outcome.unwrap_or_else(|panic| resume_unwind(panic))
         });
         rayon::scope(|scope| {
             for _ in 0..workers.max(1) {
                 scope.spawn(|_| work());
             }
         });
-        writer.join().expect("the writer does not panic")
+        writer.join().unwrap_or_else(|panic| resume_unwind(panic))
     })
 }
 
 fn take_in_order<T, E>(
     count: u32,
-    receive: &Receiver<(u32, T)>,
+    receive: &Receiver<(u32, std::thread::Result<T>)>,
     give_permit: &Sender<()>,
     take: &mut impl FnMut(u32, T) -> Result<(), E>,
 ) -> Result<(), E> {
@@ -73,7 +82,7 @@ fn take_in_order<T, E>(
     let mut wanted = 0;
     while wanted < count {
         let (n, result) = (receive.recv()).expect("a worker holds the wanted number");
-        early.insert(n, result);
+        early.insert(n, result.unwrap_or_else(|panic| resume_unwind(panic)));
         while let Some(result) = early.remove(&wanted) {
             take(wanted, result)?;
             wanted += 1;

@@ -61,6 +61,13 @@ fn the_first_error_of_the_writer_ends_the_work() {
 }
 
 #[test]
+fn a_panic_of_a_worker_ends_the_work() {
+    let make = |n: u32| if n == 40 { panic!("on purpose") } else { n };
+    let run = || in_order(10_000, 2, make, |_, _| Ok::<(), ()>(()));
+    assert!(std::panic::catch_unwind(run).is_err());
+}
+
+#[test]
 fn no_work_is_done_at_once() {
     assert_eq!(in_order(0, 2, |n| n, |_, _| Err(())), Ok(()));
 }
