@@ -4,6 +4,7 @@ use crate::domain::line::Domain;
 use crate::domain::size::SizeWish;
 use crate::geometry::point::Point;
 use crate::noding::arrangement::Arrangement;
+use crate::seams::pitch_cells;
 
 /// The wish of one edge of the arrangement.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,7 +34,7 @@ pub fn edge_wish(
     let [a, b] = arrangement.edges[edge as usize].map(|node| arrangement.points[node as usize]);
     let pieces = arrangement.pieces_of(edge);
     if pieces.is_empty() {
-        let pitch = lattice_pitch(sizes.default_m, domain.grid.cell_m);
+        let pitch = pitch_cells(domain, sizes);
         if let Some(count) = lattice_count(a, b, pitch) {
             return EdgeWish {
                 goal: f64::from(count),
@@ -51,11 +52,6 @@ pub fn edge_wish(
         lower: 1,
         upper: u32::MAX,
     }
-}
-
-/// Cells between neighbouring lattice nodes. Every stage that knows the lattice uses this one.
-pub fn lattice_pitch(size_m: f64, cell_m: f64) -> i32 {
-    (size_m / cell_m).round().clamp(1.0, f64::from(1 << 29)) as i32
 }
 
 /// Number of pitches between two lattice nodes on one row or column; `None` for other points.
