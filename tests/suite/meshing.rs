@@ -2,6 +2,10 @@
 
 #[path = "meshing_cases.rs"]
 mod cases;
+#[path = "meshing_looping.rs"]
+mod looping;
+#[path = "meshing_strip.rs"]
+mod strip;
 
 use polder::meshing::Meshed;
 use polder::meshing::Options;
