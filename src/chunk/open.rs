@@ -300,5 +300,6 @@ fn chunk_view<'a>(table: &chunk_file::Chunk<'a>) -> ChunkView<'a> {
         interior: rows(table.interior_xy_m()),
         quad_start: slice(table.quad_start()),
         quads: rows(table.quads()),
+        last_resort_quads: slice(table.patch_last_resort_quads()),
     }
 }

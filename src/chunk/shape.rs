@@ -145,6 +145,11 @@ fn rows_of_words(name: &str, rows: &[u16], words: usize) -> Shape {
 pub(crate) fn chunk(view: &ChunkView) -> Shape {
     let patches = view.subdomain.len();
     length("patch_method", view.method.len(), patches)?;
+    length(
+        "patch_last_resort_quads",
+        view.last_resort_quads.len(),
+        patches,
+    )?;
     offsets(
         "boundary_start",
         view.boundary_start,

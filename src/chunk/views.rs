@@ -353,6 +353,8 @@ pub struct ChunkView<'a> {
     pub quad_start: &'a [u32],
     /// Quads as local ids, patch by patch.
     pub quads: &'a [[u32; 4]],
+    /// Patch -> quads that the last resort made.
+    pub last_resort_quads: &'a [u32],
 }
 
 /// One patch.
@@ -362,6 +364,8 @@ pub struct PatchView<'a> {
     pub subdomain: u32,
     /// How it was made, as in `Method`.
     pub method: u8,
+    /// Quads that the last resort made.
+    pub last_resort_quads: u32,
     /// Local -> global id of boundary nodes.
     pub boundary: &'a [u32],
     /// Interior nodes, local metres.
@@ -386,6 +390,7 @@ impl<'a> ChunkView<'a> {
         PatchView {
             subdomain: self.subdomain[p],
             method: self.method[p],
+            last_resort_quads: self.last_resort_quads[p],
             boundary: &self.boundary[range(self.boundary_start, p)],
             interior: &self.interior[range(self.interior_start, p)],
             quads: &self.quads[range(self.quad_start, p)],

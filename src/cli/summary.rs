@@ -67,6 +67,12 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         "peak_memory_mb": outcome.peak_memory_bytes as f64 / 1e6,
         "quality": quality(&outcome.verdict),
         "methods": methods,
+        "last_resort": {
+            "subdomains": q.last_resort.subdomains,
+            "quads": q.last_resort.quads,
+            "subdomains_pct": pct(q.last_resort.subdomains, outcome.subdomains as u64),
+            "quads_pct": pct(q.last_resort.quads, quads),
+        },
         "displacement_max_m": outcome.displacement_max_m,
         "displacement_p99_m": outcome.displacement_p99_m,
         "length_m": outcome.length_m,
@@ -104,6 +110,11 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         json,
         good: outcome.verdict.holds(),
     }
+}
+
+/// A share in percent.
+fn pct(part: u64, whole: u64) -> f64 {
+    100.0 * part as f64 / whole.max(1) as f64
 }
 
 fn quality(verdict: &Verdict) -> Value {
