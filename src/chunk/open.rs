@@ -264,6 +264,7 @@ fn lines_view<'a>(table: &lines_file::Lines<'a>) -> LinesView<'a> {
         length_m: table.length_m(),
         length_dropped_m: table.length_dropped_m(),
         kinds: table.kinds(),
+        kind_tolerance_m: slice(table.kind_tolerance_m()),
         names: table.names(),
         words: table.words(),
         kind_row: slice(table.line_kind()),

@@ -241,6 +241,8 @@ pub struct LinesView<'a> {
     pub length_m: f64,
     /// Length dropped inside the domain, metres.
     pub length_dropped_m: f64,
+    /// Kind -> how far its lines may lie from their mesh edges, metres.
+    pub kind_tolerance_m: &'a [f64],
     pub(crate) kinds: Strings<'a>,
     pub(crate) names: Strings<'a>,
     pub(crate) words: Strings<'a>,
@@ -296,6 +298,11 @@ impl<'a> LinesView<'a> {
             stations.push(at);
         }
         stations
+    }
+
+    /// How far `line` may lie from the mesh edges that represent it, metres.
+    pub fn tolerance_m(&self, line: usize) -> f64 {
+        self.kind_tolerance_m[self.kind_row[line] as usize]
     }
 
     /// Name of the kind of `line`, or empty.

@@ -132,12 +132,15 @@ fn drop_loop(graph: &mut Graph, face: &Face) -> bool {
         .count();
     let is_free =
         (face.walk.iter()).all(|&(edge, _)| graph.edges[edge as usize].inside == [true; 2]);
+    let is_kept = (face.walk.iter())
+        .flat_map(|&(edge, _)| &graph.edges[edge as usize].pieces)
+        .any(|piece| graph.measure.keeps_loops(piece.line));
     let length: f64 = (face.walk.iter())
         .map(|&(edge, _)| graph.ends_m(edge))
         .map(|(a, b)| distance(a, b))
         .sum();
     let size = graph.edges[face.walk[0].0 as usize].size_m;
-    if junctions > 1 || !is_free || length > LOOP_MAX * size {
+    if junctions > 1 || !is_free || is_kept || length > LOOP_MAX * size {
         return false;
     }
     let at = graph.point(face.walk[0].1);

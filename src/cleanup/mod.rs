@@ -15,6 +15,9 @@
 //! 5. Every edge shorter than [`SHORTEST`] h that is left is a finding with its place, and so is
 //!    every angle below [`SHARP_DEG`] degrees.
 //! 6. Same input, same bits. A tolerance of zero changes nothing.
+//! 7. What a kind of line asks for ([`rules`]) holds in every step: its own tolerance, no move
+//!    beyond what it is held to, closed lines of it that keep an inside. Where two lines merge, the
+//!    one of higher priority moves only if the other cannot.
 //!
 //! On 18 real cases the 0.1 % quantile of edge length is .30 to .36 h, that of the distance from a
 //! node to an edge that is not its own .27 to .31 h; lines move by less than .2 to .25 h on 99 % of
@@ -64,6 +67,7 @@ mod leftovers;
 mod measure;
 mod operate;
 mod relax;
+pub mod rules;
 mod separate;
 mod simplify;
 mod stations;
@@ -77,6 +81,7 @@ use crate::cleanup::collapse::Thin;
 use crate::cleanup::graph::Graph;
 use crate::cleanup::measure::Measure;
 use crate::cleanup::relax::Wanted;
+use crate::cleanup::rules::Rule;
 use crate::cleanup::separate::Narrow;
 use crate::cleanup::simplify::Smooth;
 use crate::cleanup::wedges::Zip;
@@ -105,10 +110,12 @@ impl Tolerance {
 }
 
 /// What clean-up may do.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// Zero switches clean-up off.
+    /// Where no kind says otherwise. Zero for all lines switches clean-up off.
     pub tolerance: Tolerance,
+    /// By kind of line; as long as [`Domain::kinds`].
+    pub by_kind: Vec<Rule>,
 }
 
 /// The line work, ready to be meshed.
@@ -141,7 +148,7 @@ pub fn clean(
     let measure = Measure::new(domain, sizes, options);
     let side = (sizes.default_m / domain.grid.cell_m).max(4.0);
     let mut graph = Graph::new(&arrangement, measure, side);
-    let is_on = options.tolerance.at_m(sizes.default_m) > 0.0;
+    let is_on = graph.measure.allows_any();
     if is_on {
         make_room(&mut graph);
     }

@@ -1,5 +1,9 @@
 //! Words and `job.toml` -> Job. Flags win over the file; unknown keys are refused.
 
+use crate::cleanup::rules::HOLD_M;
+use crate::cleanup::rules::PRIORITY_MAX;
+use crate::cleanup::rules::Rule;
+use crate::cleanup::rules::SmallLoops;
 use crate::cli::args::BuildArgs;
 use crate::ingest::CrsChoice;
 use crate::pipeline::job::CELL_M;
@@ -20,6 +24,8 @@ struct JobFile {
     size: Option<f64>,
     #[serde(default)]
     sizes: BTreeMap<String, f64>,
+    #[serde(default)]
+    kinds: BTreeMap<String, KindTable>,
     tolerance: Option<f64>,
     crs: Option<toml::Value>,
     corner: Option<f64>,
@@ -27,6 +33,61 @@ struct JobFile {
     tile: Option<f64>,
     seam_budget: Option<u32>,
     threads: Option<usize>,
+}
+
+/// The keys of a table `[kinds.NAME]`: what clean-up may do with lines of this kind.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct KindTable {
+    tolerance_m: Option<f64>,
+    #[serde(default)]
+    priority: i32,
+    small_loops: Option<LoopWord>,
+    hold: Option<bool>,
+    hold_m: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum LoopWord {
+    Keep,
+    Collapse,
+}
+
+impl KindTable {
+    fn rule(&self, kind: &str) -> Result<Rule, String> {
+        let metres = |key: &str, value: Option<f64>| match value {
+            Some(it) if !(it.is_finite() && it >= 0.0) => Err(format!(
+                "kinds.{kind}.{key} is {it}: it must be zero or a positive number of metres"
+            )),
+            good => Ok(good),
+        };
+        if self.priority.abs() > PRIORITY_MAX {
+            return Err(format!(
+                "kinds.{kind}.priority is {}: it must lie in -{PRIORITY_MAX}..{PRIORITY_MAX}",
+                self.priority
+            ));
+        }
+        let hold_m = match (self.hold, metres("hold_m", self.hold_m)?) {
+            (Some(false), Some(_)) => {
+                return Err(format!(
+                    "kinds.{kind}: `hold = false` and `hold_m` contradict each other"
+                ));
+            }
+            (_, Some(hold_m)) => Some(hold_m),
+            (Some(true), None) => Some(HOLD_M),
+            (_, None) => None,
+        };
+        Ok(Rule {
+            tolerance_m: metres("tolerance_m", self.tolerance_m)?,
+            priority: self.priority,
+            small_loops: match self.small_loops {
+                Some(LoopWord::Keep) => SmallLoops::Keep,
+                _ => SmallLoops::Collapse,
+            },
+            hold_m,
+        })
+    }
 }
 
 /// The job that these words ask for, or a sentence that says what is wrong with them.
@@ -57,12 +118,16 @@ pub fn job(args: &BuildArgs) -> Result<Job, String> {
         }
         (None, None) => CrsChoice::FromFile,
     };
+    let rules = (file.kinds.into_iter())
+        .map(|(kind, table)| table.rule(&kind).map(|rule| (kind, rule)))
+        .collect::<Result<Vec<_>, String>>()?;
     let job = Job {
         input,
         output,
         size_m,
         sizes_m: file.sizes.into_iter().collect(),
         tolerance_m: args.tolerance.or(file.tolerance),
+        rules,
         crs,
         cell_m: file.cell.unwrap_or(CELL_M),
         tile_m: args.tile.or(file.tile),

@@ -265,6 +265,7 @@ impl Tiny {
     pub fn write_parts(&self, writer: &Writer) -> Vec<ChunkReceipt> {
         writer.write_frame(&self.frame).unwrap();
         let lines = LineWork {
+            tolerance_by_kind_m: &vec![1.0; self.domain.kinds.len()],
             domain: &self.domain,
             dropped: &self.dropped,
             changes: &self.changes,
