@@ -42,14 +42,6 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
     let stages: Vec<Value> = (outcome.stages.iter())
         .map(|it| json!({"stage": it.stage, "seconds": it.seconds, "note": it.note}))
         .collect();
-    let methods: serde_json::Map<String, Value> = (METHODS.iter().zip(&q.methods))
-        .map(|(name, it)| {
-            (
-                name.to_string(),
-                json!({"subdomains": it.subdomains, "quads": it.quads}),
-            )
-        })
-        .collect();
     let verdict = verdict(&outcome.verdict);
     let json = json!({
         "output": job.output.display().to_string(),
@@ -66,7 +58,7 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         "stages": stages,
         "peak_memory_mb": outcome.peak_memory_bytes as f64 / 1e6,
         "quality": quality(&outcome.verdict),
-        "methods": methods,
+        "methods": methods(&outcome.verdict),
         "last_resort": {
             "subdomains": q.last_resort.subdomains,
             "quads": q.last_resort.quads,
@@ -82,12 +74,38 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         "largest_patch_over_budget": outcome.largest_patch_over_budget,
         "findings": outcome.findings,
     });
-    let mut text = format!(
-        "{}: {quads} quads in {} sub-domains, {:.1} s, {:.0} MB\n\
+    let mut text = first_lines(job, outcome);
+    for (what, count) in &outcome.findings {
+        let _ = writeln!(text, "finding: {count} x {what}");
+    }
+    text.push_str(&verdict.text);
+    Summary {
+        text,
+        json,
+        good: outcome.verdict.holds(),
+    }
+}
+
+fn methods(verdict: &Verdict) -> Value {
+    (METHODS.iter().zip(&verdict.quality.methods))
+        .map(|(name, it)| {
+            let counts = json!({"subdomains": it.subdomains, "quads": it.quads});
+            (name.to_string(), counts)
+        })
+        .collect::<serde_json::Map<String, Value>>()
+        .into()
+}
+
+/// The figures that one looks at first.
+fn first_lines(job: &Job, outcome: &Outcome) -> String {
+    let q = &outcome.verdict.quality;
+    format!(
+        "{}: {} quads in {} sub-domains, {:.1} s, {:.0} MB\n\
          scaled Jacobian: mean {:.3}, 1 % {:.2}, least {:.3}; irregular nodes {:.1} %\n\
          lines moved at most {:.2} m (99 % below {:.2} m); dropped {:.1} m of {:.0} m\n\
          parity: gap {:.4} %\n",
         job.output.display(),
+        q.scaled_jacobian.count,
         outcome.subdomains,
         outcome.seconds(),
         outcome.peak_memory_bytes as f64 / 1e6,
@@ -100,16 +118,7 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         outcome.length_dropped_m,
         outcome.length_m,
         100.0 * outcome.ilp_gap,
-    );
-    for (what, count) in &outcome.findings {
-        let _ = writeln!(text, "finding: {count} x {what}");
-    }
-    text.push_str(&verdict.text);
-    Summary {
-        text,
-        json,
-        good: outcome.verdict.holds(),
-    }
+    )
 }
 
 /// A share in percent.
