@@ -111,6 +111,11 @@ impl<'a> Measure<'a> {
             .local_m(self.domain.lines[line as usize].points[k])
     }
 
+    /// Length of a line as read, metres.
+    pub(super) fn length_m(&self, line: LineId) -> f64 {
+        self.stations_m[self.start[line as usize + 1] as usize - 1]
+    }
+
     /// The point of `line` at `station_m`.
     pub(super) fn point(&self, line: LineId, station_m: f64) -> Xy {
         let stations = self.stations(line);

@@ -69,6 +69,7 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         "displacement_p99_m": outcome.displacement_p99_m,
         "length_m": outcome.length_m,
         "length_dropped_m": outcome.length_dropped_m,
+        "length_shrunk_m": outcome.length_shrunk_m,
         "ilp_gap": outcome.ilp_gap,
         "odd_share": outcome.odd_share,
         "largest_patch_over_budget": outcome.largest_patch_over_budget,
@@ -102,7 +103,7 @@ fn first_lines(job: &Job, outcome: &Outcome) -> String {
     format!(
         "{}: {} quads in {} sub-domains, {:.1} s, {:.0} MB\n\
          scaled Jacobian: mean {:.3}, 1 % {:.2}, least {:.3}; irregular nodes {:.1} %\n\
-         lines moved at most {:.2} m (99 % below {:.2} m); dropped {:.1} m of {:.0} m\n\
+         lines moved at most {:.2} m (99 % below {:.2} m); dropped {:.1} m of {:.0} m, {:.1} m became nodes\n\
          parity: gap {:.4} %\n",
         job.output.display(),
         q.scaled_jacobian.count,
@@ -117,6 +118,7 @@ fn first_lines(job: &Job, outcome: &Outcome) -> String {
         outcome.displacement_p99_m,
         outcome.length_dropped_m,
         outcome.length_m,
+        outcome.length_shrunk_m,
         100.0 * outcome.ilp_gap,
     )
 }
