@@ -75,6 +75,9 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         },
         "displacement_max_m": outcome.displacement_max_m,
         "displacement_p99_m": outcome.displacement_p99_m,
+        "displacement_max_over_size": outcome.displacement_max_over_size,
+        "displacement_p99_over_size": outcome.displacement_p99_over_size,
+        "min_edge_m": job.min_edge() * job.size_m,
         "length_m": outcome.length_m,
         "length_dropped_m": outcome.length_dropped_m,
         "ilp_gap": outcome.ilp_gap,
@@ -82,10 +85,26 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         "largest_patch_over_budget": outcome.largest_patch_over_budget,
         "findings": outcome.findings,
     });
-    let mut text = format!(
+    let mut text = told(job, outcome);
+    for (what, count) in &outcome.findings {
+        let _ = writeln!(text, "finding: {count} x {what}");
+    }
+    text.push_str(&verdict.text);
+    Summary {
+        text,
+        json,
+        good: outcome.verdict.holds(),
+    }
+}
+
+/// The figures of a build in a few lines.
+fn told(job: &Job, outcome: &Outcome) -> String {
+    let q = &outcome.verdict.quality;
+    let quads = q.scaled_jacobian.count;
+    format!(
         "{}: {quads} quads in {} sub-domains, {:.1} s, {:.0} MB\n\
          scaled Jacobian: mean {:.3}, 1 % {:.2}, least {:.3}; irregular nodes {:.1} %\n\
-         lines moved at most {:.2} m (99 % below {:.2} m); dropped {:.1} m of {:.0} m\n\
+         lines moved at most {:.2} m (99 % below {:.2} m, {:.3} of the size); dropped {:.1} m of {:.0} m\n\
          parity: gap {:.4} %\n",
         job.output.display(),
         outcome.subdomains,
@@ -97,19 +116,11 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         100.0 * q.irregular(),
         outcome.displacement_max_m,
         outcome.displacement_p99_m,
+        outcome.displacement_p99_over_size,
         outcome.length_dropped_m,
         outcome.length_m,
         100.0 * outcome.ilp_gap,
-    );
-    for (what, count) in &outcome.findings {
-        let _ = writeln!(text, "finding: {count} x {what}");
-    }
-    text.push_str(&verdict.text);
-    Summary {
-        text,
-        json,
-        good: outcome.verdict.holds(),
-    }
+    )
 }
 
 /// A share in percent.
