@@ -12,8 +12,11 @@
 //! 3. Tags survive all merges: a merged edge carries the stretches of all its lines.
 //! 4. Holes and boundaries may move within the tolerance, but none goes; corners of the outline
 //!    stay unless an edge between two of them is too short.
-//! 5. Every edge shorter than [`SHORTEST`] h that is left is a finding with its place, and so is
+//! 5. Every edge shorter than [`Options::min_edge`] h that is left is a finding with its place, its
+//!    lines and its length, and so is every gap between a node and an edge that is narrower, and
 //!    every angle below [`SHARP_DEG`] degrees.
+//!    Junctions, and corners that turn by more than [`Options::corner_deg`] between edges of at least
+//!    that length, remain nodes unless they are merged with what is near.
 //! 6. Same input, same bits. A tolerance of zero changes nothing.
 //! 7. What a kind of line asks for ([`rules`]) holds in every step: its own tolerance, no move
 //!    beyond what it is held to, closed lines of it that keep an inside. Where two lines merge, the
@@ -33,18 +36,15 @@
 //! 2. `separate`: short edges are contracted, near misses joined, the narrowest first. Of two nodes
 //!    the less important moves (`importance`).
 //! 3. `wedges`: lines that leave a node at an acute angle share their way until they are far enough
-//!    apart. Where the tolerance forbids it, long arms get nodes, so that they can be joined or
-//!    pushed apart bit by bit.
-//! 4. `collapse`: faces that are too thin to hold elements are closed, and small triangles, which
-//!    need six sides; small loops are dropped.
+//!    apart.
+//! 4. `collapse`: faces that are too thin to hold elements are closed; small loops are dropped.
 //! 5. `relax`: with frozen topology, nodes and edges push each other apart.
 //! 6. `audit`: everything is measured against the input again; `thread`: the edges of each line are
 //!    made one way from end to end; `leftovers`: what could not be had is named.
 //!
-//! Steps 1 to 4 run first with half of the tolerance, then with all of it:
-//! what needs much movement is done only where nothing else helps. `operate` holds the operations,
-//! `clear` the exact test, `stations` and `measure` the book-keeping of stretches, `graph` and
-//! `index` the graph.
+//! Steps 1 to 4 run first with half of the tolerance, then with all of it: what needs much movement
+//! is done only where nothing else helps. `operate` holds the operations, `clear` the exact test,
+//! `stations` and `measure` the book-keeping of stretches, `graph` and `index` the graph.
 //!
 //! The aims (separation of h/4, then relaxation) are those of S2Builder's snap rounding, which also
 //! merges first. Unlike it we do not snap to sites: with a veto on each operation bundles of lines
@@ -119,6 +119,11 @@ pub struct Options {
     pub tolerance: Tolerance,
     /// By kind of line; as long as [`Domain::kinds`].
     pub by_kind: Vec<Rule>,
+    /// Least length of an edge, as a share of the wished size along its lines; [`SHORTEST`] is
+    /// usual.
+    pub min_edge: f64,
+    /// A line turns at a corner if its direction changes by more than this, degrees.
+    pub corner_deg: f64,
 }
 
 /// The line work, ready to be meshed.
@@ -136,7 +141,7 @@ pub struct Cleaned {
     pub findings: Vec<Finding>,
 }
 
-/// Edges shorter than this share of the mesh size are findings.
+/// Edges shorter than this share of the mesh size are findings, unless the job says otherwise.
 pub const SHORTEST: f64 = 0.25;
 /// Angles below this are findings, degrees.
 pub const SHARP_DEG: f64 = 20.0;
@@ -194,68 +199,36 @@ const SMOOTH: Smooth = Smooth {
     angle_deg: 25.0,
     over_ends: true,
 };
-/// What one pass may do.
-struct Pass {
-    narrow: Narrow,
-    zip: Zip,
-    thin: Thin,
-}
-/// With half of the tolerance, which leaves 99 % of the lines within a quarter of the size: nearly
-/// all room is made here.
-const GENTLE: Pass = Pass {
-    narrow: Narrow {
-        edge: 0.25,
-        gap: 0.3,
-        end: 0.25,
-        share: 0.5,
-    },
-    zip: Zip {
-        below_deg: 30.0,
-        gap: 0.45,
-        share: 0.5,
-    },
-    thin: Thin {
-        width: 0.25,
-        triangle: 0.29,
-        reach: 0.5,
-        share: 0.5,
-        drops_loops: false,
-    },
-};
-/// With all of the tolerance, but only for what is far too narrow.
-const FIRM: Pass = Pass {
-    narrow: Narrow {
-        edge: 0.25,
-        gap: 0.18,
-        end: 0.25,
-        share: 1.0,
-    },
-    zip: Zip {
-        below_deg: 20.0,
-        gap: 0.3,
-        share: 1.0,
-    },
-    thin: Thin {
-        width: 0.2,
-        triangle: 0.29,
-        reach: 0.5,
-        share: 1.0,
-        drops_loops: true,
-    },
+/// What is merged; what is a little wider, relaxation can push apart.
+const NARROW: Narrow = Narrow {
+    edge: 0.25,
+    gap: 0.18,
+    end: 0.25,
+    share: 1.0,
 };
 /// What is merged because relaxation could not push it apart.
 const STUCK: Narrow = Narrow {
     edge: 0.3,
-    gap: 0.2,
+    gap: 0.22,
     end: 0.25,
     share: 1.0,
 };
-/// More than what should hold in the end: steps are damped, and lines are in each other's way.
+const ZIP: Zip = Zip {
+    below_deg: 25.0,
+    gap: 0.35,
+    share: 1.0,
+};
+const THIN: Thin = Thin {
+    width: 0.25,
+    reach: 0.5,
+    share: 1.0,
+};
+/// A little more than what should hold in the end: steps are damped.
 const WANTED: Wanted = Wanted {
-    edge: 0.5,
-    gap: 0.45,
+    edge: 0.36,
+    gap: 0.31,
     shares: [0.5, 0.9],
-    rounds: 12,
+    rounds: 40,
 };
 /// Zipping, closing and merging make work for each other; more rounds than this find hardly any.
 const ROUNDS_MAX: usize = 6;
@@ -263,26 +236,42 @@ const ROUNDS_MAX: usize = 6;
 /// All steps, in order.
 fn make_room(graph: &mut Graph) {
     simplify::simplify(graph, &FINE, &graph.nodes());
-    for pass in [&GENTLE, &FIRM] {
-        separate::separate(graph, &pass.narrow, &graph.nodes());
+    let least = graph.measure.min_edge;
+    for share in [0.5, 1.0] {
+        let edge = NARROW.edge.max(least);
+        let narrow = Narrow {
+            share,
+            edge,
+            ..NARROW
+        };
+        separate::separate(graph, &narrow, &graph.nodes());
         let mut nodes = graph.nodes();
         for _ in 0..ROUNDS_MAX {
             simplify::simplify(graph, &SMOOTH, &nodes);
             let mark = graph.touched.len();
-            wedges::zip_wedges(graph, &pass.zip, &nodes);
-            collapse::collapse_thin(graph, &pass.thin, &nodes);
+            wedges::zip_wedges(graph, &Zip { share, ..ZIP }, &nodes);
+            collapse::collapse_thin(graph, &Thin { share, ..THIN }, &nodes);
             nodes = graph.nodes_since(mark);
             if nodes.is_empty() {
                 break;
             }
-            separate::separate(graph, &pass.narrow, &nodes);
+            separate::separate(graph, &narrow, &nodes);
             nodes = graph.nodes_since(mark);
         }
     }
+    let (stuck, wanted) = (
+        Narrow {
+            edge: STUCK.edge.max(1.1 * least),
+            ..STUCK
+        },
+        Wanted {
+            edge: WANTED.edge.max(1.2 * least),
+            ..WANTED
+        },
+    );
     let mark = graph.touched.len();
-    wedges::divide_wedges(graph, &GENTLE.zip, &graph.nodes());
-    relax::relax(graph, &WANTED, &graph.nodes());
-    separate::separate(graph, &STUCK, &graph.nodes());
+    relax::relax(graph, &wanted, &graph.nodes());
+    separate::separate(graph, &stuck, &graph.nodes());
     simplify::simplify(graph, &SMOOTH, &graph.nodes_since(mark));
-    relax::relax(graph, &WANTED, &graph.nodes_since(mark));
+    relax::relax(graph, &wanted, &graph.nodes_since(mark));
 }

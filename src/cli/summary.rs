@@ -42,6 +42,14 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
     let stages: Vec<Value> = (outcome.stages.iter())
         .map(|it| json!({"stage": it.stage, "seconds": it.seconds, "note": it.note}))
         .collect();
+    let methods: serde_json::Map<String, Value> = (METHODS.iter().zip(&q.methods))
+        .map(|(name, it)| {
+            (
+                name.to_string(),
+                json!({"subdomains": it.subdomains, "quads": it.quads}),
+            )
+        })
+        .collect();
     let verdict = verdict(&outcome.verdict);
     let json = json!({
         "output": job.output.display().to_string(),
@@ -58,7 +66,7 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         "stages": stages,
         "peak_memory_mb": outcome.peak_memory_bytes as f64 / 1e6,
         "quality": quality(&outcome.verdict),
-        "methods": methods(&outcome.verdict),
+        "methods": methods,
         "last_resort": {
             "subdomains": q.last_resort.subdomains,
             "quads": q.last_resort.quads,
@@ -67,6 +75,9 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         },
         "displacement_max_m": outcome.displacement_max_m,
         "displacement_p99_m": outcome.displacement_p99_m,
+        "displacement_max_over_size": outcome.displacement_max_over_size,
+        "displacement_p99_over_size": outcome.displacement_p99_over_size,
+        "min_edge_m": job.min_edge() * job.size_m,
         "length_m": outcome.length_m,
         "length_dropped_m": outcome.length_dropped_m,
         "ilp_gap": outcome.ilp_gap,
@@ -74,7 +85,7 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         "largest_patch_over_budget": outcome.largest_patch_over_budget,
         "findings": outcome.findings,
     });
-    let mut text = first_lines(job, outcome);
+    let mut text = told(job, outcome);
     for (what, count) in &outcome.findings {
         let _ = writeln!(text, "finding: {count} x {what}");
     }
@@ -86,26 +97,16 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
     }
 }
 
-fn methods(verdict: &Verdict) -> Value {
-    (METHODS.iter().zip(&verdict.quality.methods))
-        .map(|(name, it)| {
-            let counts = json!({"subdomains": it.subdomains, "quads": it.quads});
-            (name.to_string(), counts)
-        })
-        .collect::<serde_json::Map<String, Value>>()
-        .into()
-}
-
-/// The figures that one looks at first.
-fn first_lines(job: &Job, outcome: &Outcome) -> String {
+/// The figures of a build in a few lines.
+fn told(job: &Job, outcome: &Outcome) -> String {
     let q = &outcome.verdict.quality;
+    let quads = q.scaled_jacobian.count;
     format!(
-        "{}: {} quads in {} sub-domains, {:.1} s, {:.0} MB\n\
+        "{}: {quads} quads in {} sub-domains, {:.1} s, {:.0} MB\n\
          scaled Jacobian: mean {:.3}, 1 % {:.2}, least {:.3}; irregular nodes {:.1} %\n\
-         lines moved at most {:.2} m (99 % below {:.2} m); dropped {:.1} m of {:.0} m\n\
+         lines moved at most {:.2} m (99 % below {:.2} m, {:.3} of the size); dropped {:.1} m of {:.0} m\n\
          parity: gap {:.4} %\n",
         job.output.display(),
-        q.scaled_jacobian.count,
         outcome.subdomains,
         outcome.seconds(),
         outcome.peak_memory_bytes as f64 / 1e6,
@@ -115,6 +116,7 @@ fn first_lines(job: &Job, outcome: &Outcome) -> String {
         100.0 * q.irregular(),
         outcome.displacement_max_m,
         outcome.displacement_p99_m,
+        outcome.displacement_p99_over_size,
         outcome.length_dropped_m,
         outcome.length_m,
         100.0 * outcome.ilp_gap,

@@ -184,6 +184,8 @@ fn cleaning(job: &Job, domain: &Domain) -> Result<cleanup::Options, Error> {
     Ok(cleanup::Options {
         tolerance: job.tolerance(),
         by_kind,
+        min_edge: job.min_edge(),
+        corner_deg: job.corner_deg,
     })
 }
 
