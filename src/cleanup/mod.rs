@@ -44,8 +44,8 @@
 //! 6. `audit`: everything is measured against the input again; `thread`: the edges of each line are
 //!    made one way from end to end; `leftovers`: what could not be had is named.
 //!
-//! Steps 1 to 4 run first with half of the tolerance, then with all of it:
-//! what needs much movement is done only where nothing else helps. `operate` holds the operations,
+//! Steps 1 to 4 run first with half of the tolerance, then with more of it, then with all: what
+//! needs much movement is done only where nothing else helps. `operate` holds the operations,
 //! `clear` the exact test, `stations` and `measure` the book-keeping of stretches, `graph` and
 //! `index` the graph.
 //!
@@ -230,21 +230,42 @@ const GENTLE: Pass = Pass {
         drops_loops: false,
     },
 };
-/// With all of the tolerance, but only for what is far too narrow.
+/// With more of it, for what is much too narrow.
 const FIRM: Pass = Pass {
     narrow: Narrow {
         edge: 0.25,
         gap: 0.18,
         end: 0.25,
-        share: 1.0,
+        share: 0.7,
     },
     zip: Zip {
         below_deg: 20.0,
         gap: 0.3,
-        share: 1.0,
+        share: 0.7,
     },
     thin: Thin {
         width: 0.2,
+        triangle: 0.29,
+        reach: 0.5,
+        share: 0.7,
+        drops_loops: false,
+    },
+};
+/// With all of it, but only for what no mesh could bear.
+const LAST: Pass = Pass {
+    narrow: Narrow {
+        edge: 0.2,
+        gap: 0.1,
+        end: 0.25,
+        share: 1.0,
+    },
+    zip: Zip {
+        below_deg: 10.0,
+        gap: 0.2,
+        share: 1.0,
+    },
+    thin: Thin {
+        width: 0.15,
         triangle: 0.29,
         reach: 0.5,
         share: 1.0,
@@ -272,7 +293,7 @@ const ROUNDS_MAX: usize = 6;
 fn make_room(graph: &mut Graph) {
     simplify::simplify(graph, &FINE, &graph.nodes());
     let least = graph.measure.min_edge;
-    for pass in [&GENTLE, &FIRM] {
+    for pass in [&GENTLE, &FIRM, &LAST] {
         let narrow = Narrow {
             edge: pass.narrow.edge.max(least),
             ..pass.narrow
