@@ -72,8 +72,7 @@ pub fn check(
         return Ok(());
     }
     let measure = Measure::new(domain, sizes, options);
-    let side = sizes.default_m / domain.grid.cell_m;
-    let graph = Graph::new(&cleaned.arrangement, measure, side.max(4.0));
+    let graph = Graph::new(&cleaned.arrangement, &measure);
     check_distances(&graph)?;
     check_coverage(domain, &graph, input, cleaned)?;
     check_lengths(&graph, cleaned)

@@ -81,7 +81,8 @@ fn walk(graph: &Graph, seen: &mut [[bool; 2]], edge: u32, side: usize, width: f6
         side = usize::from(graph.edges[leaves as usize].ends[0] != at);
         edge = leaves;
     }
-    let is_thin = is_inside && area > 0.0 && area / length < width * size;
+    let is_whole = walk.iter().all(|&(edge, _)| graph.may_change(edge));
+    let is_thin = is_whole && is_inside && area > 0.0 && area / length < width * size;
     (is_thin && walk.len() <= WALK_MAX).then_some(Face {
         width: area / length / size,
         walk,

@@ -21,7 +21,8 @@ pub(super) fn leftovers(graph: &Graph) -> Vec<Finding> {
         [ends[0].min(ends[1]), ends[0].max(ends[1])]
     });
     let mut findings: Vec<Finding> = edges.iter().map(|&edge| short_edge(graph, edge)).collect();
-    let mut sharp = wedges(graph, SHARP_DEG, &graph.nodes());
+    let all: Vec<u32> = (0..graph.at.len() as u32).collect();
+    let mut sharp = wedges(graph, SHARP_DEG, &all);
     sharp.sort_by(|u, v| {
         let place = |node: u32| graph.point(node);
         (place(u.hub).cmp(&place(v.hub))).then_with(|| place(u.a).cmp(&place(v.a)))

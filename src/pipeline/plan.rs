@@ -207,11 +207,11 @@ fn clean(
         let note = format!("{} nodes, {} edges", noded.points.len(), noded.edges.len());
         Ok(((noded, clipped), note))
     })?;
-    watch.stage("cleanup", 1, |_| {
+    watch.stage("cleanup", 1000, |count| {
         let options = cleanup::Options {
             tolerance: cleanup::Tolerance::Metres(job.tolerance_in_force_m()),
         };
-        let made = cleanup::clean(domain, sizes, noded, &options);
+        let made = tiles::clean(domain, sizes, noded, &options, count);
         findings.extend(made.findings);
         let mut dropped: Vec<Dropped> = clipped.iter().map(clipped_stretch).collect();
         dropped.extend(made.dropped);
