@@ -15,12 +15,15 @@
 //!    all others twice, in opposite directions. With 3: no hanging node, no crack, no hole.
 //! 8. `areas`: the cells of a patch have the area that its walks enclose, to 1e-9.
 //! 9. `outline`: the curves between mesh and outside do not cross each other, enclose the area of
-//!    all cells to 1e-9, and lie within the tolerance of the domain's rings both ways. With 6 and 7
+//!    all cells to 1e-9, and lie within the tolerance (of each ring's kind) of the domain's rings both ways. With 6 and 7
 //!    it follows that no two cells overlap: the mesh covers each point once, as its outline does.
 //! 10. `lines`: the mesh edges of each constraint line form chains in the digitised direction that
-//!     follow it from end to end within the tolerance both ways, dropped stretches aside.
-//! 11. `bounds`: each curve's count lies between its bounds.
-//! 12. `certificate`: the cost of the counts is as claimed and not below the bound, which is
+//!     follow it from end to end within the tolerance of its kind both ways, dropped stretches
+//!     aside.
+//! 11. `edges`: no edge of a cell is shorter than the least length of its place (that of its lines;
+//!     inside a patch the least of its walks), but for those whose middle is that of a finding.
+//! 12. `bounds`: each curve's count lies between its bounds.
+//! 13. `certificate`: the cost of the counts is as claimed and not below the bound, which is
 //!     computed again from the duals.
 //!
 //! # Needs
@@ -50,6 +53,7 @@ mod outline;
 mod parity;
 mod rings;
 mod segments;
+mod shortest;
 mod walks;
 
 use crate::check::quality::Quality;
@@ -72,7 +76,6 @@ pub const OPTIONS: Options = Options { slack_m: 0.002 };
 
 /// Verifies all promises of `mesh`. Never fails: what cannot be read breaks the promise `files`.
 pub fn check(mesh: &Mesh, options: &Options) -> Verdict {
-    let allowed_m = mesh.index().tolerance_m + options.slack_m;
     let mut files = Promise::new("files");
     let mut scan = Scan::of(mesh);
     for number in 0..mesh.chunks() {
@@ -87,16 +90,18 @@ pub fn check(mesh: &Mesh, options: &Options) -> Verdict {
         cells,
         conforming,
         quality,
+        shortest,
         ..
     } = scan;
-    let outline = outline::check(mesh, area_m2, files.holds(), allowed_m);
+    let outline = outline::check(mesh, area_m2, files.holds(), options.slack_m);
     let quality = quality.finished();
     let mut promises = vec![files, counts::check(mesh)];
     promises.extend(walks::check(mesh));
     promises.extend(cells.promises());
     promises.extend(conforming.promises());
     promises.push(outline);
-    promises.push(following::check(mesh, allowed_m));
+    promises.push(following::check(mesh, options.slack_m));
+    promises.push(shortest.promise());
     promises.extend(parity::check(mesh));
     Verdict { promises, quality }
 }
@@ -122,6 +127,7 @@ struct Scan<'a> {
     cells: cells::Cells,
     conforming: conforming::Conforming<'a>,
     quality: quality::Measuring<'a>,
+    shortest: shortest::Shortest,
     /// Positions of the nodes of the patch at hand, kept for its allocation.
     places: Vec<Xy>,
 }
@@ -134,6 +140,7 @@ impl<'a> Scan<'a> {
             cells: cells::Cells::new(origin_m),
             conforming: conforming::Conforming::new(mesh.frame(), origin_m),
             quality: quality::Measuring::new(mesh.frame(), origin_m),
+            shortest: shortest::Shortest::new(mesh),
             places: Vec::new(),
         }
     }
@@ -146,5 +153,6 @@ impl<'a> Scan<'a> {
         }
         self.conforming.add(patch, &self.places);
         self.quality.add(patch, &self.places);
+        self.shortest.add(patch, &self.places);
     }
 }

@@ -4,7 +4,6 @@ use std::fmt;
 
 use crate::cleanup::Cleaned;
 use crate::cleanup::Options;
-use crate::cleanup::SHORTEST;
 use crate::cleanup::audit::Stretch;
 use crate::cleanup::audit::carriers;
 use crate::cleanup::audit::stretches;
@@ -68,10 +67,10 @@ pub fn check(
 ) -> Result<(), Defect> {
     noding::check::check(&cleaned.arrangement).map_err(Defect::Arrangement)?;
     check_outline(domain, &cleaned.arrangement)?;
-    if options.tolerance.at_m(sizes.default_m) <= 0.0 {
+    let measure = Measure::new(domain, sizes, options);
+    if !measure.allows_any() {
         return Ok(());
     }
-    let measure = Measure::new(domain, sizes, options);
     let graph = Graph::new(&cleaned.arrangement, &measure);
     check_distances(&graph)?;
     check_coverage(domain, &graph, input, cleaned)?;
@@ -138,7 +137,7 @@ fn check_lengths(graph: &Graph, cleaned: &Cleaned) -> Result<(), Defect> {
     let mut short = graph.live();
     short.retain(|&edge| {
         let (a, b) = graph.ends_m(edge);
-        distance(a, b) < SHORTEST * graph.edges[edge as usize].size_m
+        distance(a, b) < graph.measure.min_edge * graph.edges[edge as usize].size_m
     });
     match short.first() {
         Some(&edge) if short.len() > named => Err(Defect::ShortEdge(edge)),

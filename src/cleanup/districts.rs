@@ -100,7 +100,8 @@ pub fn site<'a>(
     options: &Options,
     grain: &Grain,
 ) -> Site<'a> {
-    let is_on = options.tolerance.at_m(sizes.default_m) > 0.0;
+    let measure = Measure::new(domain, sizes, options);
+    let is_on = measure.allows_any();
     let size = sizes.default_m / domain.grid.cell_m;
     let districts = if is_on {
         cut(&arrangement, grain, (grain.side_min * size).ceil() as i64)
@@ -108,7 +109,7 @@ pub fn site<'a>(
         Vec::new()
     };
     Site {
-        measure: Measure::new(domain, sizes, options),
+        measure,
         arrangement,
         is_on,
         districts,

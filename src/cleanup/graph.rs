@@ -274,7 +274,8 @@ impl<'a> Graph<'a> {
 
     /// What becomes of a draft that falls onto the edge between `from` and `draft.to`, if there is
     /// one. `on_left`: the draft came from the left of that edge. `Err` if the domain would vanish
-    /// on both sides, or a hole between them: the outline may move but not go.
+    /// on both sides, or a hole between them: the outline may move but not go; or a loop that is
+    /// to be kept.
     pub(super) fn fuse(
         &self,
         from: u32,
@@ -284,6 +285,10 @@ impl<'a> Graph<'a> {
         let Some(edge) = self.find(from, draft.to) else {
             return Ok(None);
         };
+        let pieces = self.edges[edge as usize].pieces_from(from);
+        if self.measure.would_flatten(&draft.pieces, &pieces) {
+            return Err(());
+        }
         let there = self.edges[edge as usize].inside_from(from);
         let (inside, between) = if on_left {
             ([draft.inside[0], there[1]], [draft.inside[1], there[0]])
@@ -354,7 +359,13 @@ impl<'a> Graph<'a> {
         sizes.fold(f64::INFINITY, f64::min)
     }
 
-    /// All nodes at which there is something to do.
+    /// All nodes that have edges.
+    pub(super) fn all_nodes(&self) -> Vec<u32> {
+        let all = 0..self.at.len() as u32;
+        all.filter(|&node| self.degree(node) > 0).collect()
+    }
+
+    /// Those at which there is something to do.
     pub(super) fn nodes(&self) -> Vec<u32> {
         let all = 0..self.at.len() as u32;
         let is_open = |node: u32| self.degree(node) > 0 && self.stand[node as usize] == Stand::Open;

@@ -1,5 +1,9 @@
 //! Words and `job.toml` -> Job. Flags win over the file; unknown keys are refused.
 
+use crate::cleanup::rules::HOLD_M;
+use crate::cleanup::rules::PRIORITY_MAX;
+use crate::cleanup::rules::Rule;
+use crate::cleanup::rules::SmallLoops;
 use crate::cli::args::BuildArgs;
 use crate::ingest::CrsChoice;
 use crate::pipeline::job::CELL_M;
@@ -20,13 +24,72 @@ struct JobFile {
     size: Option<f64>,
     #[serde(default)]
     sizes: BTreeMap<String, f64>,
+    #[serde(default)]
+    kinds: BTreeMap<String, KindTable>,
     tolerance: Option<f64>,
     crs: Option<toml::Value>,
-    corner: Option<f64>,
+    min_edge: Option<f64>,
+    #[serde(alias = "corner")]
+    corner_angle: Option<f64>,
     cell: Option<f64>,
     tile: Option<f64>,
     seam_budget: Option<u32>,
     threads: Option<usize>,
+}
+
+/// The keys of a table `[kinds.NAME]`: what clean-up may do with lines of this kind.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct KindTable {
+    tolerance_m: Option<f64>,
+    #[serde(default)]
+    priority: i32,
+    small_loops: Option<LoopWord>,
+    hold: Option<bool>,
+    hold_m: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum LoopWord {
+    Keep,
+    Collapse,
+}
+
+impl KindTable {
+    fn rule(&self, kind: &str) -> Result<Rule, String> {
+        let metres = |key: &str, value: Option<f64>| match value {
+            Some(it) if !(it.is_finite() && it >= 0.0) => Err(format!(
+                "kinds.{kind}.{key} is {it}: it must be zero or a positive number of metres"
+            )),
+            good => Ok(good),
+        };
+        if self.priority.abs() > PRIORITY_MAX {
+            return Err(format!(
+                "kinds.{kind}.priority is {}: it must lie in -{PRIORITY_MAX}..{PRIORITY_MAX}",
+                self.priority
+            ));
+        }
+        let hold_m = match (self.hold, metres("hold_m", self.hold_m)?) {
+            (Some(false), Some(_)) => {
+                return Err(format!(
+                    "kinds.{kind}: `hold = false` and `hold_m` contradict each other"
+                ));
+            }
+            (_, Some(hold_m)) => Some(hold_m),
+            (Some(true), None) => Some(HOLD_M),
+            (_, None) => None,
+        };
+        Ok(Rule {
+            tolerance_m: metres("tolerance_m", self.tolerance_m)?,
+            priority: self.priority,
+            small_loops: match self.small_loops {
+                Some(LoopWord::Keep) => SmallLoops::Keep,
+                _ => SmallLoops::Collapse,
+            },
+            hold_m,
+        })
+    }
 }
 
 /// The job that these words ask for, or a sentence that says what is wrong with them.
@@ -57,16 +120,21 @@ pub fn job(args: &BuildArgs) -> Result<Job, String> {
         }
         (None, None) => CrsChoice::FromFile,
     };
+    let rules = (file.kinds.into_iter())
+        .map(|(kind, table)| table.rule(&kind).map(|rule| (kind, rule)))
+        .collect::<Result<Vec<_>, String>>()?;
     let job = Job {
         input,
         output,
         size_m,
         sizes_m: file.sizes.into_iter().collect(),
         tolerance_m: args.tolerance.or(file.tolerance),
+        min_edge_m: args.min_edge.or(file.min_edge),
+        rules,
         crs,
         cell_m: file.cell.unwrap_or(CELL_M),
         tile_m: args.tile.or(file.tile),
-        corner_deg: file.corner.unwrap_or(CORNER_DEG),
+        corner_deg: (args.corner_angle.or(file.corner_angle)).unwrap_or(CORNER_DEG),
         seam_budget_quads: args
             .seam_budget
             .or(file.seam_budget)
@@ -124,6 +192,12 @@ fn validate(job: &Job) -> Result<(), String> {
     {
         return Err("tolerance: it must be zero or a positive number of metres".into());
     }
+    let most_m = 0.5 * job.size_m;
+    if (job.min_edge_m).is_some_and(|it| !(it.is_finite() && (0.0..=most_m).contains(&it))) {
+        return Err(format!(
+            "min_edge: it must lie between zero and half the size, {most_m} m"
+        ));
+    }
     if !(job.cell_m.is_finite() && job.cell_m >= 1e-6) {
         return Err(format!(
             "cell is {} m: it must be at least 0.000001",
@@ -135,7 +209,7 @@ fn validate(job: &Job) -> Result<(), String> {
     }
     if !(5.0..=90.0).contains(&job.corner_deg) {
         return Err(format!(
-            "corner is {} degrees: it must lie in 5..90",
+            "the corner angle is {} degrees: it must lie in 5..90",
             job.corner_deg
         ));
     }

@@ -1,6 +1,8 @@
 //! What a build made and what a plan foresees, in numbers.
 
 use crate::check::verdict::Verdict;
+use crate::cleanup::changes::Reason;
+use crate::domain::finding::Finding;
 use crate::pipeline::job::Job;
 use crate::pipeline::plan::Plan;
 use crate::pipeline::progress::StageTime;
@@ -21,10 +23,16 @@ pub struct Outcome {
     pub displacement_max_m: f64,
     /// 99 % quantile of the displacement, by length, metres.
     pub displacement_p99_m: f64,
+    /// The largest displacement as a share of the wished size along each line.
+    pub displacement_max_over_size: f64,
+    /// 99 % quantile of that share.
+    pub displacement_p99_over_size: f64,
     /// Length of constraint lines inside the domain, metres.
     pub length_m: f64,
     /// Length dropped of it, metres.
     pub length_dropped_m: f64,
+    /// Length of lines that became a node, metres.
+    pub length_shrunk_m: f64,
     /// Gap of the integer programme.
     pub ilp_gap: f64,
     /// Share of odd counts among all curves.
@@ -39,9 +47,15 @@ pub struct Outcome {
 
 impl Outcome {
     /// Gathers the numbers of a finished build.
-    pub(super) fn new(job: &Job, plan: &Plan, verdict: Verdict, stages: Vec<StageTime>) -> Outcome {
+    pub(super) fn new(
+        job: &Job,
+        plan: &Plan,
+        findings: &[Finding],
+        verdict: Verdict,
+        stages: Vec<StageTime>,
+    ) -> Outcome {
         let mut by_kind = BTreeMap::new();
-        for finding in &plan.city.findings {
+        for finding in findings {
             *by_kind.entry(finding.what).or_insert(0) += 1;
         }
         let budget = f64::from(job.seam_budget_quads);
@@ -51,8 +65,14 @@ impl Outcome {
             curves: plan.city.partition.curves.len(),
             displacement_max_m: plan.city.tally.displacement_max_m,
             displacement_p99_m: plan.city.tally.displacement_p99_m,
+            displacement_max_over_size: plan.city.tally.displacement_max_over_size,
+            displacement_p99_over_size: plan.city.tally.displacement_p99_over_size,
             length_m: plan.city.tally.length_m,
             length_dropped_m: plan.city.tally.length_dropped_m,
+            length_shrunk_m: (plan.city.dropped.iter())
+                .filter(|it| it.reason == Reason::Shrunk)
+                .map(|it| it.to_m - it.from_m)
+                .sum(),
             ilp_gap: plan.city.balance.gap(),
             odd_share: plan.city.balance.odd_share,
             largest_patch_over_budget: verdict.quality.largest_patch.0 as f64 / budget,

@@ -85,6 +85,8 @@ fn bytes_of(
         size_m: 14.0,
         sizes_m: Vec::new(),
         tolerance_m: None,
+        min_edge_m: None,
+        rules: Vec::new(),
         crs: CrsChoice::FromFile,
         cell_m: CELL_M,
         tile_m,
