@@ -4,6 +4,7 @@ use crate::cleanup::SHORTEST;
 use crate::cleanup::Tolerance;
 use crate::cleanup::rules::Rule;
 use crate::cleanup::rules::SmallLoops;
+use crate::cleanup::steps::Step;
 use crate::ingest::CrsChoice;
 use std::path::PathBuf;
 
@@ -33,6 +34,8 @@ pub struct Job {
     pub tile_m: Option<f64>,
     /// A vertex that turns by more than this is a corner, degrees.
     pub corner_deg: f64,
+    /// Steps of clean-up that are left out, to measure what they are worth.
+    pub without: Vec<Step>,
     /// A sub-domain with more quads than this is cut by seams.
     pub seam_budget_quads: u32,
     /// Worker threads; 0 for as many as there are cores.
@@ -90,6 +93,7 @@ impl Job {
             "kinds": rules,
             "cell_m": self.cell_m,
             "corner_deg": self.corner_deg,
+            "without": self.without.iter().map(|step| step.name()).collect::<Vec<_>>(),
             "seam_budget_quads": self.seam_budget_quads,
         })
         .to_string()

@@ -186,6 +186,7 @@ fn cleaning(job: &Job, domain: &Domain) -> Result<cleanup::Options, Error> {
         by_kind,
         min_edge: job.min_edge(),
         corner_deg: job.corner_deg,
+        without: job.without.clone(),
     })
 }
 

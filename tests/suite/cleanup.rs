@@ -26,6 +26,7 @@ fn usual(domain: &Domain) -> Options {
         by_kind: vec![Rule::FREE; domain.kinds.len()],
         min_edge: cleanup::SHORTEST,
         corner_deg: 30.0,
+        without: Vec::new(),
     }
 }
 

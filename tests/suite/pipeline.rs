@@ -91,6 +91,7 @@ fn bytes_of(
         cell_m: CELL_M,
         tile_m,
         corner_deg: CORNER_DEG,
+        without: Vec::new(),
         // Small, so that seams are made.
         seam_budget_quads: 1500,
         threads,
