@@ -1,5 +1,7 @@
 //! What a command says when it is done, for people and for programs.
 
+use crate::check::quality::MethodShare;
+use crate::check::quality::Quality;
 use crate::check::verdict::Verdict;
 use crate::chunk::reader::Mesh;
 use crate::export::Stats;
@@ -42,14 +44,6 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
     let stages: Vec<Value> = (outcome.stages.iter())
         .map(|it| json!({"stage": it.stage, "seconds": it.seconds, "note": it.note}))
         .collect();
-    let methods: serde_json::Map<String, Value> = (METHODS.iter().zip(&q.methods))
-        .map(|(name, it)| {
-            (
-                name.to_string(),
-                json!({"subdomains": it.subdomains, "quads": it.quads}),
-            )
-        })
-        .collect();
     let verdict = verdict(&outcome.verdict);
     let json = json!({
         "output": job.output.display().to_string(),
@@ -66,13 +60,8 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         "stages": stages,
         "peak_memory_mb": outcome.peak_memory_bytes as f64 / 1e6,
         "quality": quality(&outcome.verdict),
-        "methods": methods,
-        "last_resort": {
-            "subdomains": q.last_resort.subdomains,
-            "quads": q.last_resort.quads,
-            "subdomains_pct": pct(q.last_resort.subdomains, outcome.subdomains as u64),
-            "quads_pct": pct(q.last_resort.quads, quads),
-        },
+        "methods": methods(q),
+        "last_resort": last_resort(q),
         "displacement_max_m": outcome.displacement_max_m,
         "displacement_p99_m": outcome.displacement_p99_m,
         "length_m": outcome.length_m,
@@ -112,9 +101,24 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
     }
 }
 
-/// A share in percent.
-fn pct(part: u64, whole: u64) -> f64 {
-    100.0 * part as f64 / whole.max(1) as f64
+/// What each method won.
+fn methods(q: &Quality) -> Value {
+    let share = |it: &MethodShare| json!({"subdomains": it.subdomains, "quads": it.quads});
+    let each = METHODS.iter().zip(&q.methods);
+    (each.map(|(name, it)| (name.to_string(), share(it)))).collect()
+}
+
+/// What the last resort made, wherever it was needed.
+fn last_resort(q: &Quality) -> Value {
+    let made = q.last_resort;
+    let subdomains: u64 = q.methods.iter().map(|it| it.subdomains).sum();
+    let pct = |part: u64, whole: u64| 100.0 * part as f64 / whole.max(1) as f64;
+    json!({
+        "subdomains": made.subdomains,
+        "quads": made.quads,
+        "subdomains_pct": pct(made.subdomains, subdomains),
+        "quads_pct": pct(made.quads, q.scaled_jacobian.count),
+    })
 }
 
 fn quality(verdict: &Verdict) -> Value {
