@@ -302,6 +302,8 @@ fn balance(
                 rows_max: 20_000,
                 worth: 0.0,
                 rounds_max: 20,
+                climb_max: 60,
+                neighbourhoods_max: 20,
             },
         )?;
         let note = format!("gap {:.4} %, {} rows", 100.0 * balance.gap(), balance.rows);
