@@ -18,7 +18,7 @@
 //! Counts within the bounds of `intervals` (`parity::check`), at least one an edge.
 //!
 //! # Method
-//! 1. `apportion`: shares a curve's count among its edges so that the sum of their costs (the
+//! 1. [`apportion`]: shares a curve's count among its edges so that the sum of their costs (the
 //!    relative deviation that `intervals` uses for curves) is least. Convex and separable, so
 //!    giving one interval at a time to the edge with the least marginal cost is optimal.
 //! 2. `place`: equal spacing on each edge.
@@ -33,10 +33,10 @@
 use crate::geometry::grid::Grid;
 use crate::geometry::point::Point;
 use crate::geometry::point::Xy;
+use crate::intervals::apportion;
 use crate::intervals::wish::EdgeWish;
 use crate::partition::subdomains::Partition;
 
-pub mod apportion;
 pub mod check;
 pub mod walks;
 

@@ -1,11 +1,11 @@
 //! The discretised walks of one sub-domain.
 
-use crate::boundary::apportion::apportion;
 use crate::boundary::part_of;
 use crate::domain::line::Domain;
 use crate::domain::size::SizeWish;
 use crate::geometry::point::Point;
 use crate::geometry::point::Xy;
+use crate::intervals::apportion::apportion;
 use crate::intervals::wish::EdgeWish;
 use crate::intervals::wish::edge_wish;
 use crate::noding::arrangement::Arrangement;

@@ -12,7 +12,8 @@ use crate::geometry::point::Xy;
 /// Samples lie this fraction of the mesh size apart.
 const SAMPLE: f64 = 0.1;
 
-pub(crate) fn check(mesh: &Mesh, allowed_m: f64) -> Promise {
+/// `slack_m`: what rounding adds to the tolerance of each line.
+pub(crate) fn check(mesh: &Mesh, slack_m: f64) -> Promise {
     let mut promise = Promise::new("lines");
     let lines = mesh.lines();
     let edges = LineEdges::of(mesh);
@@ -29,22 +30,24 @@ pub(crate) fn check(mesh: &Mesh, allowed_m: f64) -> Promise {
             stations_m: lines.stations_m(line),
             steps: chains.concat(),
             dropped: dropped.of_line(line as u32),
-            allowed_m,
+            allowed_m: lines.tolerance_m(line) + slack_m,
             step_m: SAMPLE * mesh.index().size_m,
         };
         let name = || format!("line {line} (feature {})", lines.source[line]);
         follow.tears(&chains, &name, &mut promise);
         follow.directions(&chains, &name, &mut promise);
-        totals.farthest_m = totals
-            .farthest_m
-            .max(follow.line_to_mesh(&name, &mut promise));
-        totals.farthest_m = totals
-            .farthest_m
-            .max(follow.mesh_to_line(&name, &mut promise));
+        let there_m = follow.line_to_mesh(&name, &mut promise);
+        let back_m = follow.mesh_to_line(&name, &mut promise);
+        let farthest_m = there_m.max(back_m);
+        totals.farthest_m = totals.farthest_m.max(farthest_m);
+        totals.used = totals.used.max(farthest_m / follow.allowed_m);
     }
     promise.says(format!(
-        "{} edges in {} chains, farthest {:.3} m of {allowed_m:.3} m allowed",
-        totals.steps, totals.chains, totals.farthest_m
+        "{} edges in {} chains, farthest {:.3} m, at most {:.1} % of what is allowed",
+        totals.steps,
+        totals.chains,
+        totals.farthest_m,
+        100.0 * totals.used
     ));
     promise
 }
@@ -54,6 +57,8 @@ struct Totals {
     chains: u64,
     steps: u64,
     farthest_m: f64,
+    /// Largest share of a line's own tolerance.
+    used: f64,
 }
 
 /// Dropped stretches by line.

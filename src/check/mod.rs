@@ -15,10 +15,11 @@
 //!    all others twice, in opposite directions. With 3: no hanging node, no crack, no hole.
 //! 8. `areas`: the cells of a patch have the area that its walks enclose, to 1e-9.
 //! 9. `outline`: the curves between mesh and outside do not cross each other, enclose the area of
-//!    all cells to 1e-9, and lie within the tolerance of the domain's rings both ways. With 6 and 7
+//!    all cells to 1e-9, and lie within the tolerance (of each ring's kind) of the domain's rings both ways. With 6 and 7
 //!    it follows that no two cells overlap: the mesh covers each point once, as its outline does.
 //! 10. `lines`: the mesh edges of each constraint line form chains in the digitised direction that
-//!     follow it from end to end within the tolerance both ways, dropped stretches aside.
+//!     follow it from end to end within the tolerance of its kind both ways, dropped stretches
+//!     aside.
 //! 11. `bounds`: each curve's count lies between its bounds.
 //! 12. `certificate`: the cost of the counts is as claimed and not below the bound, which is
 //!     computed again from the duals.
@@ -72,7 +73,6 @@ pub const OPTIONS: Options = Options { slack_m: 0.002 };
 
 /// Verifies all promises of `mesh`. Never fails: what cannot be read breaks the promise `files`.
 pub fn check(mesh: &Mesh, options: &Options) -> Verdict {
-    let allowed_m = mesh.index().tolerance_m + options.slack_m;
     let mut files = Promise::new("files");
     let mut scan = Scan::of(mesh);
     for number in 0..mesh.chunks() {
@@ -89,14 +89,14 @@ pub fn check(mesh: &Mesh, options: &Options) -> Verdict {
         quality,
         ..
     } = scan;
-    let outline = outline::check(mesh, area_m2, files.holds(), allowed_m);
+    let outline = outline::check(mesh, area_m2, files.holds(), options.slack_m);
     let quality = quality.finished();
     let mut promises = vec![files, counts::check(mesh)];
     promises.extend(walks::check(mesh));
     promises.extend(cells.promises());
     promises.extend(conforming.promises());
     promises.push(outline);
-    promises.push(following::check(mesh, allowed_m));
+    promises.push(following::check(mesh, options.slack_m));
     promises.extend(parity::check(mesh));
     Verdict { promises, quality }
 }

@@ -34,7 +34,7 @@ pub(crate) fn check(mesh: &Mesh) -> [Promise; 2] {
 fn cost(frame: &FrameView, unit: f64, curve: usize, n: u32) -> i64 {
     let goal = frame.goal[curve].max(f64::from(frame.lower[curve]));
     let n = f64::from(n);
-    (frame.weight[curve] * ((n / goal).max(goal / n) - 1.0) / unit).round() as i64
+    (frame.weight[curve] * ((n / goal).max(goal / n).powi(2) - 1.0) / unit).round() as i64
 }
 
 /// The cheapest count of a curve, its cost, and what the cheapest count of other parity costs more.

@@ -125,6 +125,15 @@ pub struct MethodShare {
     pub scaled_jacobian_min: f64,
 }
 
+/// What the last resort made, in patches of its own and in holes of others.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LastResortShare {
+    /// Sub-domains with at least one quad of it.
+    pub subdomains: u64,
+    /// Quads.
+    pub quads: u64,
+}
+
 /// How many of the worst places are kept.
 pub const WORST: usize = 20;
 
@@ -155,6 +164,8 @@ pub struct Quality {
     pub valence_free: [u64; 16],
     /// By method, as in `Method`.
     pub methods: [MethodShare; 5],
+    /// The last resort, wherever it was needed.
+    pub last_resort: LastResortShare,
     /// Cells of the largest patch, and its sub-domain.
     pub largest_patch: (u64, u32),
     /// The cells of least scaled Jacobian, worst first.
@@ -251,6 +262,7 @@ impl<'a> Measuring<'a> {
                 valence: [0; 16],
                 valence_free: [0; 16],
                 methods: [empty; 5],
+                last_resort: LastResortShare::default(),
                 largest_patch: (0, OUTSIDE),
                 worst: Vec::new(),
                 smallest: Vec::new(),
@@ -290,6 +302,9 @@ impl<'a> Measuring<'a> {
         let method = usize::from(patch.method).min(4);
         self.area_m2 += share.area_m2 - self.quality.methods[method].area_m2;
         self.quality.methods[method] = share;
+        let last_resort = &mut self.quality.last_resort;
+        last_resort.subdomains += u64::from(patch.last_resort_quads > 0);
+        last_resort.quads += u64::from(patch.last_resort_quads);
         let cells = patch.quads.len() as u64;
         if cells > self.quality.largest_patch.0 {
             self.quality.largest_patch = (cells, patch.subdomain);

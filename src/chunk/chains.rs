@@ -2,6 +2,7 @@
 
 use crate::chunk::reader::Mesh;
 use crate::chunk::views::FrameView;
+use crate::chunk::views::LinesView;
 
 /// One mesh edge that represents a stretch of a line, in the line's direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,14 +31,15 @@ pub struct LineEdges<'a> {
     piece: Vec<u32>,
     /// Line by line: row of the edge's first node in `curve_nodes`.
     entry: Vec<u32>,
-    /// A stretch no longer than this may lie on its edge either way, metres.
-    tolerance_m: f64,
+    /// Whose tolerances say how long a stretch may lie on its edge either way.
+    lines: LinesView<'a>,
 }
 
 impl<'a> LineEdges<'a> {
     /// Sorts the pieces of the frame by their line. O(pieces).
     pub fn of(mesh: &'a Mesh) -> LineEdges<'a> {
-        let (frame, lines) = (mesh.frame(), mesh.lines().lines());
+        let frame = mesh.frame();
+        let lines = mesh.lines().lines();
         let mut start = vec![0_u32; lines + 1];
         for &line in frame.piece_line {
             start[line as usize + 1] += 1;
@@ -63,7 +65,7 @@ impl<'a> LineEdges<'a> {
             start,
             piece,
             entry,
-            tolerance_m: mesh.index().tolerance_m,
+            lines: mesh.lines(),
         }
     }
 
@@ -96,52 +98,52 @@ impl<'a> LineEdges<'a> {
                 .then((a.from, a.to).cmp(&(b.from, b.to)))
         });
         order_points(&mut steps);
+        let tolerance_m = self.lines.tolerance_m(line);
         let mut chains: Vec<Vec<Step>> = Vec::new();
         for leg in steps.chunk_by(|a, b| a.to == b.from) {
-            let joined = (chains.last_mut()).is_some_and(|chain| self.fold(chain, leg));
+            let joined = (chains.last_mut()).is_some_and(|chain| fold(chain, leg, tolerance_m));
             if !joined {
                 chains.push(leg.to_vec());
             }
         }
         chains
     }
+}
 
-    /// Adds `leg` to `chain` although it does not begin at its end, if the difference is a loop or a
-    /// hook within the tolerance: folded onto mesh edges, its legs may well lie on the same edges in
-    /// one direction. Edges that are run through once more are run through once, and a leg that ends
-    /// where the chain does leads away from there.
-    fn fold(&self, chain: &mut Vec<Step>, leg: &[Step]) -> bool {
-        let short = |part: &[Step]| {
-            let span_m = part[part.len() - 1].to_m - part[0].from_m;
-            span_m <= self.tolerance_m
-        };
-        let same = |a: &[Step], b: &[Step]| {
-            (a.iter().zip(b)).all(|(a, b)| (a.from, a.to) == (b.from, b.to))
-        };
-        let repeated = (1..=leg.len().min(chain.len()))
-            .rev()
-            .find(|&n| same(&chain[chain.len() - n..], leg) && short(&leg[..n]));
-        if let Some(n) = repeated {
-            let last = chain.len() - 1;
-            chain[last].to_m = leg[n - 1].to_m;
-            chain.extend(&leg[n..]);
-            return true;
-        }
-        let (begin_m, end_m) = (leg[0].from_m, leg[leg.len() - 1].to_m);
-        let leads_back = chain[chain.len() - 1].to == leg[leg.len() - 1].to;
-        if !leads_back || !short(leg) {
-            return false;
-        }
-        chain.extend(leg.iter().rev().map(|step| Step {
-            from: step.to,
-            to: step.from,
-            from_m: begin_m + (end_m - step.to_m),
-            to_m: begin_m + (end_m - step.from_m),
-            forward: !step.forward,
-            ..*step
-        }));
-        true
+/// Adds `leg` to `chain` although it does not begin at its end, if the difference is a loop or a
+/// hook within the tolerance: folded onto mesh edges, its legs may well lie on the same edges in
+/// one direction. Edges that are run through once more are run through once, and a leg that ends
+/// where the chain does leads away from there.
+fn fold(chain: &mut Vec<Step>, leg: &[Step], tolerance_m: f64) -> bool {
+    let short = |part: &[Step]| {
+        let span_m = part[part.len() - 1].to_m - part[0].from_m;
+        span_m <= tolerance_m
+    };
+    let same =
+        |a: &[Step], b: &[Step]| (a.iter().zip(b)).all(|(a, b)| (a.from, a.to) == (b.from, b.to));
+    let repeated = (1..=leg.len().min(chain.len()))
+        .rev()
+        .find(|&n| same(&chain[chain.len() - n..], leg) && short(&leg[..n]));
+    if let Some(n) = repeated {
+        let last = chain.len() - 1;
+        chain[last].to_m = leg[n - 1].to_m;
+        chain.extend(&leg[n..]);
+        return true;
     }
+    let (begin_m, end_m) = (leg[0].from_m, leg[leg.len() - 1].to_m);
+    let leads_back = chain[chain.len() - 1].to == leg[leg.len() - 1].to;
+    if !leads_back || !short(leg) {
+        return false;
+    }
+    chain.extend(leg.iter().rev().map(|step| Step {
+        from: step.to,
+        to: step.from,
+        from_m: begin_m + (end_m - step.to_m),
+        to_m: begin_m + (end_m - step.from_m),
+        forward: !step.forward,
+        ..*step
+    }));
+    true
 }
 
 /// Steps of no length (several mesh edges for one point of the line, as where an end was joined to

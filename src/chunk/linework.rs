@@ -11,6 +11,8 @@ use crate::domain::line::Domain;
 pub struct LineWork<'a> {
     /// The lines and rings as read.
     pub domain: &'a Domain,
+    /// How far lines of each kind may lie from the mesh edges that represent them, metres.
+    pub tolerance_by_kind_m: &'a [f64],
     /// Stretches of lines that are not in the mesh.
     pub dropped: &'a [Dropped],
     /// Where the topology was changed.

@@ -58,7 +58,7 @@ mod shape;
 mod store;
 
 /// Version of the layout of all files; counted up with every change that old readers would misread.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// Chunks are closed when they reach this size, bytes. Half of the upper end of 32 to 64 MiB: one
 /// more patch, up to the seam budget, still fits below it.

@@ -264,6 +264,7 @@ fn lines_view<'a>(table: &lines_file::Lines<'a>) -> LinesView<'a> {
         length_m: table.length_m(),
         length_dropped_m: table.length_dropped_m(),
         kinds: table.kinds(),
+        kind_tolerance_m: slice(table.kind_tolerance_m()),
         names: table.names(),
         words: table.words(),
         kind_row: slice(table.line_kind()),
@@ -300,5 +301,6 @@ fn chunk_view<'a>(table: &chunk_file::Chunk<'a>) -> ChunkView<'a> {
         interior: rows(table.interior_xy_m()),
         quad_start: slice(table.quad_start()),
         quads: rows(table.quads()),
+        last_resort_quads: slice(table.patch_last_resort_quads()),
     }
 }

@@ -12,6 +12,8 @@ pub struct PatchRecord {
     pub subdomain: SubdomainId,
     /// How it was made.
     pub method: Method,
+    /// Quads that the last resort made.
+    pub last_resort_quads: u32,
     /// Local node -> global id for the boundary nodes, which have the first local ids.
     pub boundary: Vec<u32>,
     /// Positions of interior nodes, local metres; local ids go on from `boundary`.
@@ -28,6 +30,7 @@ impl PatchRecord {
         PatchRecord {
             subdomain,
             method: patch.method,
+            last_resort_quads: patch.last_resort_quads,
             boundary,
             interior,
             quads: patch.quads,
@@ -36,8 +39,8 @@ impl PatchRecord {
 
     /// What it takes in a chunk file, bytes.
     pub fn bytes(&self) -> usize {
-        // 17: a row in each vector that has one row a patch.
-        17 + 4 * self.boundary.len() + 16 * (self.interior.len() + self.quads.len())
+        // 21: a row in each vector that has one row a patch.
+        21 + 4 * self.boundary.len() + 16 * (self.interior.len() + self.quads.len())
     }
 }
 

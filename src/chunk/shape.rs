@@ -121,6 +121,8 @@ pub(crate) fn lines(view: &LinesView) -> Shape {
     length("line_name", view.name_row.len(), lines)?;
     below("line_name", view.name_row, view.names.len())?;
     rows_of_words("line_kind", view.kind_row, view.kinds.len())?;
+    let kinds = view.kinds.len();
+    length("kind_tolerance_m", view.kind_tolerance_m.len(), kinds)?;
     let dropped = view.dropped_line.len();
     below("dropped_line", view.dropped_line, lines)?;
     length("dropped_reason", view.dropped_reason.len(), dropped)?;
@@ -145,6 +147,11 @@ fn rows_of_words(name: &str, rows: &[u16], words: usize) -> Shape {
 pub(crate) fn chunk(view: &ChunkView) -> Shape {
     let patches = view.subdomain.len();
     length("patch_method", view.method.len(), patches)?;
+    length(
+        "patch_last_resort_quads",
+        view.last_resort_quads.len(),
+        patches,
+    )?;
     offsets(
         "boundary_start",
         view.boundary_start,

@@ -241,6 +241,8 @@ pub struct LinesView<'a> {
     pub length_m: f64,
     /// Length dropped inside the domain, metres.
     pub length_dropped_m: f64,
+    /// Kind -> how far its lines may lie from their mesh edges, metres.
+    pub kind_tolerance_m: &'a [f64],
     pub(crate) kinds: Strings<'a>,
     pub(crate) names: Strings<'a>,
     pub(crate) words: Strings<'a>,
@@ -298,6 +300,11 @@ impl<'a> LinesView<'a> {
         stations
     }
 
+    /// How far `line` may lie from the mesh edges that represent it, metres.
+    pub fn tolerance_m(&self, line: usize) -> f64 {
+        self.kind_tolerance_m[self.kind_row[line] as usize]
+    }
+
     /// Name of the kind of `line`, or empty.
     pub fn kind(&self, line: usize) -> &'a str {
         self.kinds.get(self.kind_row[line] as usize)
@@ -353,6 +360,8 @@ pub struct ChunkView<'a> {
     pub quad_start: &'a [u32],
     /// Quads as local ids, patch by patch.
     pub quads: &'a [[u32; 4]],
+    /// Patch -> quads that the last resort made.
+    pub last_resort_quads: &'a [u32],
 }
 
 /// One patch.
@@ -362,6 +371,8 @@ pub struct PatchView<'a> {
     pub subdomain: u32,
     /// How it was made, as in `Method`.
     pub method: u8,
+    /// Quads that the last resort made.
+    pub last_resort_quads: u32,
     /// Local -> global id of boundary nodes.
     pub boundary: &'a [u32],
     /// Interior nodes, local metres.
@@ -386,6 +397,7 @@ impl<'a> ChunkView<'a> {
         PatchView {
             subdomain: self.subdomain[p],
             method: self.method[p],
+            last_resort_quads: self.last_resort_quads[p],
             boundary: &self.boundary[range(self.boundary_start, p)],
             interior: &self.interior[range(self.interior_start, p)],
             quads: &self.quads[range(self.quad_start, p)],

@@ -4,8 +4,10 @@ use crate::cleanup::changes::Dropped;
 use crate::cleanup::changes::Reason;
 use crate::cleanup::changes::Tally;
 use crate::cleanup::graph::Graph;
+use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;
 use crate::domain::line::LineId;
+use crate::geometry::point::Point;
 use crate::geometry::point::Xy;
 use crate::noding::arrangement::Arrangement;
 use crate::noding::arrangement::Piece;
@@ -24,17 +26,13 @@ pub(super) fn audit(graph: &Graph, input: &Arrangement) -> (Vec<Dropped>, Tally)
     let carriers = carriers(graph);
     let mut dropped: Vec<Dropped> = Vec::new();
     let missing = subtract(&wanted, &there);
+    let mut known: Vec<&Dropped> = graph.dropped.iter().collect();
+    known.sort_by_key(|it| it.line);
     for (line, from_m, to_m) in missing
         .iter()
         .flat_map(|it| uncovered(graph, &carriers, it, 0.0))
     {
-        let known = graph.dropped.iter().filter(|it| it.line == line);
-        let middle = 0.5 * (from_m + to_m);
-        let reason = (known
-            .clone()
-            .find(|it| it.from_m <= middle && middle <= it.to_m))
-        .or(known.clone().next())
-        .map_or(Reason::BeyondTolerance, |it| it.reason);
+        let reason = reason(graph, &known, (line, from_m, to_m));
         dropped.push(Dropped {
             line,
             reason,
@@ -44,7 +42,10 @@ pub(super) fn audit(graph: &Graph, input: &Arrangement) -> (Vec<Dropped>, Tally)
     }
     let mut tally = displacements(graph);
     tally.length_m = wanted.iter().map(|(_, from, to)| to - from).sum();
-    tally.length_dropped_m = dropped.iter().map(|it| it.to_m - it.from_m).sum();
+    tally.length_dropped_m = (dropped.iter())
+        .filter(|it| it.reason != Reason::Shrunk)
+        .map(|it| it.to_m - it.from_m)
+        .sum();
     tally.rows = rows(graph);
     (dropped, tally)
 }
@@ -157,6 +158,44 @@ pub(super) fn uncovered(
     parts
 }
 
+/// Why a stretch is not there: what the operation said that dropped it, if one is known.
+fn reason(graph: &Graph, known: &[&Dropped], (line, from_m, to_m): Stretch) -> Reason {
+    if is_a_node(graph, line, from_m, to_m) {
+        return Reason::Shrunk;
+    }
+    let own = &known[known.partition_point(|it| it.line < line)..];
+    let own = &own[..own.partition_point(|it| it.line == line)];
+    let middle = 0.5 * (from_m + to_m);
+    (own.iter())
+        .find(|it| it.from_m <= middle && middle <= it.to_m)
+        .or(own.first())
+        .map_or(Reason::BeyondTolerance, |it| it.reason)
+}
+
+/// True if a whole line, shorter than the mesh size, lies within tolerance of one node.
+fn is_a_node(graph: &Graph, line: LineId, from_m: f64, to_m: f64) -> bool {
+    let limit = graph.measure.tolerance_m[line as usize];
+    let is_whole = to_m - from_m >= graph.measure.length_m(line) - ROUNDING_M;
+    if !is_whole || to_m - from_m > graph.measure.size_m[line as usize] {
+        return false;
+    }
+    let mut way: Vec<Xy> = vec![graph.measure.point(line, from_m)];
+    let piece = Piece { line, from_m, to_m };
+    graph.measure.visit_vertices(&piece, |p| way.push(p));
+    way.push(graph.measure.point(line, to_m));
+    let cell_m = graph.measure.grid().cell_m;
+    let [x, y] = [0, 1].map(|k| (way[0][k] / cell_m).round() as i32);
+    let mut found = Vec::new();
+    let at = Point::new(x, y);
+    (graph.index).near(at, at, limit / cell_m, &mut found);
+    (found.iter())
+        .flat_map(|&edge| graph.edges[edge as usize].ends)
+        .any(|node| {
+            let node = graph.metres(node);
+            way.iter().all(|&p| distance(p, node) <= limit)
+        })
+}
+
 /// Largest and 99 % displacement by length, of every segment of every piece from its edge.
 fn displacements(graph: &Graph) -> Tally {
     let mut samples: Vec<(f64, f64)> = Vec::new();
@@ -169,7 +208,7 @@ fn displacements(graph: &Graph) -> Tally {
             way.push(graph.measure.point(piece.line, high));
             for pair in way.windows(2) {
                 let [u, v] = [pair[0], pair[1]];
-                let length = crate::cleanup::measure::distance(u, v);
+                let length = distance(u, v);
                 // the distance to a segment is convex along the pair: quarters are fine enough
                 for k in 0..4 {
                     let t = (f64::from(k) + 0.5) / 4.0;

@@ -14,6 +14,9 @@ pub enum Reason {
     SmallLoop,
     /// No place within the tolerance could be found for it.
     BeyondTolerance,
+    /// Not lost, but a node now: shorter than the mesh size, and within tolerance of a node that
+    /// joins what it joined.
+    Shrunk,
 }
 
 /// A stretch of a line that was dropped. What was only moved, joined or merged (all within the
@@ -52,6 +55,7 @@ pub struct Tally {
     pub displacement_p99_m: f64,
     /// Length of all lines inside the domain, metres.
     pub length_m: f64,
-    /// Length dropped inside the domain ([`Reason::Clipped`] not counted), metres.
+    /// Length dropped inside the domain ([`Reason::Clipped`] and [`Reason::Shrunk`] not counted),
+    /// metres.
     pub length_dropped_m: f64,
 }

@@ -68,10 +68,10 @@ pub fn check(
 ) -> Result<(), Defect> {
     noding::check::check(&cleaned.arrangement).map_err(Defect::Arrangement)?;
     check_outline(domain, &cleaned.arrangement)?;
-    if options.tolerance.at_m(sizes.default_m) <= 0.0 {
+    let measure = Measure::new(domain, sizes, options);
+    if !measure.allows_any() {
         return Ok(());
     }
-    let measure = Measure::new(domain, sizes, options);
     let side = sizes.default_m / domain.grid.cell_m;
     let graph = Graph::new(&cleaned.arrangement, measure, side.max(4.0));
     check_distances(&graph)?;

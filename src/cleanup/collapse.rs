@@ -6,6 +6,7 @@ use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;
 use crate::cleanup::separate::gap_m;
 use crate::cleanup::separate::join;
+use crate::cleanup::separate::unite;
 use crate::cleanup::wedges::sorted_star;
 
 /// Which faces are closed, in shares of the local mesh size.
@@ -14,15 +15,20 @@ pub(super) struct Thin {
     /// Faces whose 2 x area / perimeter is below this: the width of a strip, the inscribed radius
     /// of a round face.
     pub(super) width: f64,
+    /// The same for triangles: the least that they can be meshed with is three quads and six sides.
+    pub(super) triangle: f64,
     /// A line moves at most this far to close one.
     pub(super) reach: f64,
     /// How much of the tolerance may be used.
     pub(super) share: f64,
+    /// May a small loop go that could not be closed?
+    pub(super) drops_loops: bool,
 }
 
 /// A face's outer walk and how thin it is.
 struct Face {
     width: f64,
+    is_triangle: bool,
     /// Half-edges: edge and first node.
     walk: Vec<(u32, u32)>,
 }
@@ -30,33 +36,42 @@ struct Face {
 /// Faces with more edges than this are not thin in the sense of one place to close.
 const WALK_MAX: usize = 64;
 
+/// Triangles with more edges than this have their six sides anyway.
+const SIX: usize = 6;
+
+/// A turn by more than this is a corner.
+const CORNER_DEG: f64 = 30.0;
+
 /// Loops with a perimeter above this many mesh sizes are not small.
 const LOOP_MAX: f64 = 4.0;
 
 /// Closes thin faces at `nodes`, the thinnest first, one step a face.
 pub(super) fn collapse_thin(graph: &mut Graph, thin: &Thin, nodes: &[u32]) {
-    let mut faces = thin_faces(graph, thin.width, nodes);
+    let mut faces = thin_faces(graph, thin, nodes);
     faces.sort_by(|a, b| {
         let place = |face: &Face| graph.point(face.walk[0].1);
         (a.width.total_cmp(&b.width)).then_with(|| place(a).cmp(&place(b)))
     });
     for face in faces {
         let is_there = (face.walk.iter()).all(|&(edge, _)| graph.edges[edge as usize].alive);
-        if is_there && !close(graph, thin, &face) {
+        if !is_there || (face.is_triangle && dissolve(graph, thin, &face)) {
+            continue;
+        }
+        if face.width < thin.width && !close(graph, thin, &face) && thin.drops_loops {
             drop_loop(graph, &face);
         }
     }
 }
 
 /// All bounded faces inside the domain at `nodes` that are thin.
-fn thin_faces(graph: &Graph, width: f64, nodes: &[u32]) -> Vec<Face> {
+fn thin_faces(graph: &Graph, thin: &Thin, nodes: &[u32]) -> Vec<Face> {
     let mut seen = vec![[false; 2]; graph.edges.len()];
     let mut faces = Vec::new();
     for &node in nodes {
         for &edge in &graph.star[node as usize] {
             let side = usize::from(graph.edges[edge as usize].ends[0] != node);
             if !seen[edge as usize][side] {
-                faces.extend(walk(graph, &mut seen, edge, side, width));
+                faces.extend(walk(graph, &mut seen, edge, side, thin));
             }
         }
     }
@@ -64,7 +79,13 @@ fn thin_faces(graph: &Graph, width: f64, nodes: &[u32]) -> Vec<Face> {
 }
 
 /// The face on the left of `edge`, from end `side` on, if it is thin.
-fn walk(graph: &Graph, seen: &mut [[bool; 2]], edge: u32, side: usize, width: f64) -> Option<Face> {
+fn walk(
+    graph: &Graph,
+    seen: &mut [[bool; 2]],
+    edge: u32,
+    side: usize,
+    thin: &Thin,
+) -> Option<Face> {
     let (mut edge, mut side) = (edge, side);
     let (mut walk, mut area, mut length, mut size) = (Vec::new(), 0.0, 0.0, f64::INFINITY);
     let is_inside = graph.edges[edge as usize].inside[side];
@@ -81,9 +102,14 @@ fn walk(graph: &Graph, seen: &mut [[bool; 2]], edge: u32, side: usize, width: f6
         side = usize::from(graph.edges[leaves as usize].ends[0] != at);
         edge = leaves;
     }
-    let is_thin = is_inside && area > 0.0 && area / length < width * size;
-    (is_thin && walk.len() <= WALK_MAX).then_some(Face {
-        width: area / length / size,
+    if !is_inside || area <= 0.0 || walk.len() > WALK_MAX {
+        return None;
+    }
+    let width = area / length / size;
+    let is_triangle = width < thin.triangle && walk.len() <= SIX && corners(graph, &walk) == 3;
+    (is_triangle || width < thin.width).then_some(Face {
+        width,
+        is_triangle,
         walk,
     })
 }
@@ -100,6 +126,43 @@ fn leaving(graph: &Graph, edge: u32, node: u32) -> u32 {
         .position(|&it| it == edge)
         .expect("an edge is in its star");
     star[(at + star.len() - 1) % star.len()]
+}
+
+/// How many corners a walk has where it turns left.
+fn corners(graph: &Graph, walk: &[(u32, u32)]) -> usize {
+    let n = walk.len();
+    let at = |k: usize| graph.metres(walk[k % n].1);
+    (0..n)
+        .filter(|&k| {
+            let (a, o, b) = (at(k + n - 1), at(k), at(k + 1));
+            let (u, v) = ([o[0] - a[0], o[1] - a[1]], [b[0] - o[0], b[1] - o[1]]);
+            let (cross, dot) = (u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
+            cross.atan2(dot).to_degrees() > CORNER_DEG
+        })
+        .count()
+}
+
+/// Makes a triangle a line: contracts a side, or lays a corner on the side opposite, whatever moves
+/// the lines least.
+fn dissolve(graph: &mut Graph, thin: &Thin, face: &Face) -> bool {
+    let mut ways = Vec::new();
+    for &(edge, node) in &face.walk {
+        let (a, b) = graph.ends_m(edge);
+        ways.push((distance(a, b), node, edge));
+        for &(_, corner) in &face.walk {
+            ways.extend(gap_m(graph, corner, edge).map(|gap| (gap, corner, edge)));
+        }
+    }
+    ways.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
+    ways.iter().any(|&(_, node, edge)| {
+        let it = &graph.edges[edge as usize];
+        if it.ends.contains(&node) {
+            let other = it.other(node);
+            unite(graph, node, other, thin.share, "dissolved").is_some()
+        } else {
+            join(graph, node, edge, 0.25, thin.share).is_some()
+        }
+    })
 }
 
 /// Joins the node and the edge of the face that are nearest to each other.
@@ -132,12 +195,15 @@ fn drop_loop(graph: &mut Graph, face: &Face) -> bool {
         .count();
     let is_free =
         (face.walk.iter()).all(|&(edge, _)| graph.edges[edge as usize].inside == [true; 2]);
+    let is_kept = (face.walk.iter())
+        .flat_map(|&(edge, _)| &graph.edges[edge as usize].pieces)
+        .any(|piece| graph.measure.keeps_loops(piece.line));
     let length: f64 = (face.walk.iter())
         .map(|&(edge, _)| graph.ends_m(edge))
         .map(|(a, b)| distance(a, b))
         .sum();
     let size = graph.edges[face.walk[0].0 as usize].size_m;
-    if junctions > 1 || !is_free || length > LOOP_MAX * size {
+    if junctions > 1 || !is_free || is_kept || length > LOOP_MAX * size {
         return false;
     }
     let at = graph.point(face.walk[0].1);

@@ -201,7 +201,8 @@ impl<'a> Graph<'a> {
 
     /// What becomes of a draft that falls onto the edge between `from` and `draft.to`, if there is
     /// one. `on_left`: the draft came from the left of that edge. `Err` if the domain would vanish
-    /// on both sides, or a hole between them: the outline may move but not go.
+    /// on both sides, or a hole between them: the outline may move but not go; or a loop that is
+    /// to be kept.
     pub(super) fn fuse(
         &self,
         from: u32,
@@ -211,6 +212,10 @@ impl<'a> Graph<'a> {
         let Some(edge) = self.find(from, draft.to) else {
             return Ok(None);
         };
+        let pieces = self.edges[edge as usize].pieces_from(from);
+        if self.measure.would_flatten(&draft.pieces, &pieces) {
+            return Err(());
+        }
         let there = self.edges[edge as usize].inside_from(from);
         let (inside, between) = if on_left {
             ([draft.inside[0], there[1]], [draft.inside[1], there[0]])

@@ -10,29 +10,37 @@ use crate::geometry::point::Point;
 /// O(cells passed + edges found).
 pub(super) struct Index {
     side: f64,
-    cells: FxHashMap<(i32, i32), SmallVec<[u32; 6]>>,
+    /// Cells by blocks: most queries stay inside one, and hash once.
+    blocks: FxHashMap<(i32, i32), Block>,
 }
+
+/// Cells a side of a block, as a power of two.
+const BLOCK: u32 = 2;
+
+/// The cells of a block, row by row.
+type Block = [SmallVec<[u32; 4]>; 1 << (2 * BLOCK)];
 
 impl Index {
     /// An empty index with cells of `side` grid units.
     pub(super) fn new(side: f64) -> Index {
         Index {
             side,
-            cells: FxHashMap::default(),
+            blocks: FxHashMap::default(),
         }
     }
 
     pub(super) fn insert(&mut self, edge: u32, a: Point, b: Point) {
-        let cells = &mut self.cells;
+        let blocks = &mut self.blocks;
         passed(self.side, a, b, 0.0, |cell| {
-            cells.entry(cell).or_default().push(edge);
+            blocks.entry(block(cell)).or_default()[within(cell)].push(edge);
         });
     }
 
     pub(super) fn remove(&mut self, edge: u32, a: Point, b: Point) {
-        let cells = &mut self.cells;
+        let blocks = &mut self.blocks;
         passed(self.side, a, b, 0.0, |cell| {
-            let held = cells.get_mut(&cell).expect("a removed edge was inserted");
+            let held = blocks.get_mut(&block(cell));
+            let held = &mut held.expect("a removed edge was inserted")[within(cell)];
             let at = held.iter().position(|&it| it == edge);
             held.swap_remove(at.expect("an edge occupies all its cells"));
         });
@@ -41,14 +49,33 @@ impl Index {
     /// All edges with a cell within `margin` of the segment `a b`, sorted, each once.
     pub(super) fn near(&self, a: Point, b: Point, margin: f64, found: &mut Vec<u32>) {
         found.clear();
+        let mut last: (Option<(i32, i32)>, Option<&Block>) = (None, None);
+        let mut cells = 0;
         passed(self.side, a, b, margin + 1.0, |cell| {
-            if let Some(held) = self.cells.get(&cell) {
+            if last.0 != Some(block(cell)) {
+                last = (Some(block(cell)), self.blocks.get(&block(cell)));
+            }
+            if let Some(held) = last.1.map(|it| &it[within(cell)])
+                && !held.is_empty()
+            {
                 found.extend_from_slice(held);
+                cells += 1;
             }
         });
         found.sort_unstable();
-        found.dedup();
+        if cells > 1 {
+            found.dedup();
+        }
     }
+}
+
+fn block((column, row): (i32, i32)) -> (i32, i32) {
+    (column >> BLOCK, row >> BLOCK)
+}
+
+fn within((column, row): (i32, i32)) -> usize {
+    let low = (1 << BLOCK) - 1;
+    (((row & low) << BLOCK) | (column & low)) as usize
 }
 
 /// Calls `visit` for every cell within `margin` of the segment: column by column, the rows that
@@ -57,10 +84,22 @@ fn passed(side: f64, p: Point, q: Point, margin: f64, mut visit: impl FnMut((i32
     let (a, b) = (p.min(q), p.max(q));
     let (ax, ay) = (f64::from(a.x), f64::from(a.y));
     let (bx, by) = (f64::from(b.x), f64::from(b.y));
-    let cell = |v: f64| (v / side).floor() as i32;
-    let slope = if bx > ax { (by - ay) / (bx - ax) } else { 0.0 };
+    let per_side = 1.0 / side;
+    let cell = |v: f64| (v * per_side).floor() as i32;
     let (low, high) = (ay.min(by), ay.max(by));
-    for column in cell(ax - margin)..=cell(bx + margin) {
+    let (first, last) = (cell(ax - margin), cell(bx + margin));
+    let (bottom, top) = (cell(low - margin), cell(high + margin));
+    if first == last || bottom == top {
+        // most segments are shorter than a cell
+        for column in first..=last {
+            for row in bottom..=top {
+                visit((column, row));
+            }
+        }
+        return;
+    }
+    let slope = if bx > ax { (by - ay) / (bx - ax) } else { 0.0 };
+    for column in first..=last {
         let from = (f64::from(column) * side - margin).clamp(ax, bx);
         let to = (f64::from(column + 1) * side + margin).clamp(ax, bx);
         let (y0, y1) = if bx > ax {

@@ -1,6 +1,9 @@
 //! How far a stretch of an input line is from the edge that represents it.
 
 use crate::cleanup::Options;
+use crate::cleanup::rules::PRIORITY_MAX;
+use crate::cleanup::rules::Rule;
+use crate::cleanup::rules::SmallLoops;
 use crate::domain::line::Domain;
 use crate::domain::line::LineId;
 use crate::domain::line::Role;
@@ -20,15 +23,21 @@ pub(super) struct Measure<'a> {
     pub(super) tolerance_m: Vec<f64>,
     /// Wished edge length along each line.
     pub(super) size_m: Vec<f64>,
-    /// Who stays where it is when two lines meet: the higher one. Rings before lines, long before
-    /// short.
+    /// Who stays where it is when two lines meet: the higher one. Rings before held lines before
+    /// others, then by priority, long before short.
     pub(super) rank: Vec<f64>,
+    /// Lines that stay loops however small they are.
+    keeps_loops: Vec<bool>,
     /// Wished edge length where no line says otherwise.
     pub(super) default_m: f64,
 }
 
 /// Added to the rank of rings.
-pub(super) const RIM_RANK: f64 = 1e9;
+pub(super) const RIM_RANK: f64 = 1e13;
+/// Added to the rank of held lines.
+const HOLD_RANK: f64 = 1e12;
+/// What one step of priority counts: more than any line is long, metres.
+const PRIORITY_RANK: f64 = 1e9;
 
 impl<'a> Measure<'a> {
     pub(super) fn new(domain: &'a Domain, sizes: &SizeWish, options: &Options) -> Measure<'a> {
@@ -39,6 +48,7 @@ impl<'a> Measure<'a> {
             tolerance_m: Vec::with_capacity(domain.lines.len()),
             size_m: Vec::with_capacity(domain.lines.len()),
             rank: Vec::with_capacity(domain.lines.len()),
+            keeps_loops: Vec::with_capacity(domain.lines.len()),
             default_m: sizes.default_m,
         };
         for (id, line) in domain.lines.iter().enumerate() {
@@ -46,13 +56,41 @@ impl<'a> Measure<'a> {
             let length = *stations.last().expect("a line has two points");
             made.stations_m.append(&mut stations);
             made.start.push(made.stations_m.len() as u32);
-            let size = sizes.by_kind_m[usize::from(line.kind)];
-            made.size_m.push(size);
-            made.tolerance_m.push(options.tolerance.at_m(size));
-            let rim = line.role != Role::Constraint;
-            made.rank.push(length + if rim { RIM_RANK } else { 0.0 });
+            let kind = usize::from(line.kind);
+            made.size_m.push(sizes.by_kind_m[kind]);
+            made.tolerance_m.push(options.tolerance_m(sizes, kind));
+            let rule = &options.by_kind[kind];
+            made.rank.push(length + standing(line.role, rule));
+            made.keeps_loops.push(rule.small_loops == SmallLoops::Keep);
         }
         made
+    }
+
+    /// False if no line may be moved at all.
+    pub(super) fn allows_any(&self) -> bool {
+        self.tolerance_m.iter().any(|&it| it > 0.0)
+    }
+
+    /// True if loops of this line must stay loops.
+    pub(super) fn keeps_loops(&self, line: LineId) -> bool {
+        self.keeps_loops[line as usize]
+    }
+
+    /// True if two edges with these pieces, both away from one node, may not fall onto each other:
+    /// a closed line that is to be kept would lose its inside there.
+    pub(super) fn would_flatten(&self, pieces: &[Piece], others: &[Piece]) -> bool {
+        let is_forward = |piece: &Piece| piece.from_m < piece.to_m;
+        pieces.iter().any(|piece| {
+            self.keeps_loops(piece.line)
+                && self.is_closed(piece.line)
+                && (others.iter())
+                    .any(|it| it.line == piece.line && is_forward(it) != is_forward(piece))
+        })
+    }
+
+    fn is_closed(&self, line: LineId) -> bool {
+        let points = &self.domain.lines[line as usize].points;
+        points.first() == points.last()
     }
 
     pub(super) fn grid(&self) -> &Grid {
@@ -71,6 +109,11 @@ impl<'a> Measure<'a> {
     fn vertex(&self, line: LineId, k: usize) -> Xy {
         self.grid()
             .local_m(self.domain.lines[line as usize].points[k])
+    }
+
+    /// Length of a line as read, metres.
+    pub(super) fn length_m(&self, line: LineId) -> f64 {
+        self.stations_m[self.start[line as usize + 1] as usize - 1]
     }
 
     /// The point of `line` at `station_m`.
@@ -140,6 +183,22 @@ impl<'a> Measure<'a> {
     pub(super) fn metres(&self, p: Point) -> Xy {
         self.grid().local_m(p)
     }
+}
+
+/// What a line's role and rule add to its rank. Never negative.
+fn standing(role: Role, rule: &Rule) -> f64 {
+    let rim = if role == Role::Constraint {
+        0.0
+    } else {
+        RIM_RANK
+    };
+    let held = if rule.hold_m.is_some() {
+        HOLD_RANK
+    } else {
+        0.0
+    };
+    let priority = (rule.priority + PRIORITY_MAX).clamp(0, 2 * PRIORITY_MAX);
+    rim + held + PRIORITY_RANK * f64::from(priority)
 }
 
 /// Distance between two positions, metres.

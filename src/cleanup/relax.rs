@@ -5,7 +5,8 @@ use crate::cleanup::graph::Graph;
 use crate::cleanup::importance::is_rim_corner;
 use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;
-use crate::cleanup::separate::gap_m;
+use crate::cleanup::separate::gap_below_m;
+use crate::cleanup::separate::is_beside;
 use crate::geometry::point::Point;
 use crate::geometry::point::Xy;
 
@@ -40,7 +41,7 @@ pub(super) fn relax(graph: &mut Graph, wanted: &Wanted, nodes: &[u32]) {
             let push = push_m(graph, wanted, node, &mut found);
             let push = along_rim(graph, node, push);
             let size = graph.size_at_m(node);
-            if push[0].hypot(push[1]) > STILL * size && pushed(graph, wanted, node, push) {
+            if distance(push, [0.0; 2]) > STILL * size && pushed(graph, wanted, node, push) {
                 again.push(node);
                 again.extend(graph.neighbours(node));
                 again.extend(found.iter().flat_map(|&e| graph.edges[e as usize].ends));
@@ -92,33 +93,32 @@ fn push_m(graph: &Graph, wanted: &Wanted, node: u32, found: &mut Vec<u32>) -> Xy
             add(unit(end, at), 0.5 * (wants - length));
         }
     }
-    let reach = wanted.gap * graph.size_at_m(node) / graph.measure.grid().cell_m;
+    let size = graph.size_at_m(node);
+    let reach = wanted.gap * size / graph.measure.grid().cell_m;
     let p = graph.point(node);
     graph.index.near(p, p, reach, found);
     for &edge in found.iter() {
-        let wants = wanted.gap * graph.edges[edge as usize].size_m.min(graph.size_at_m(node));
-        if let Some(gap) = gap_m(graph, node, edge).filter(|&gap| gap < wants) {
+        let wants = wanted.gap * graph.edges[edge as usize].size_m.min(size);
+        if let Some(gap) = gap_below_m(graph, node, edge, wants) {
             let (a, b) = graph.ends_m(edge);
             let t = to_segment(at, a, b).1;
             add(unit(between(a, b, t), at), 0.5 * (wants - gap));
         }
     }
+    let mut others: Vec<u32> = Vec::with_capacity(found.len());
     for &edge in &graph.star[node as usize] {
-        let ends = graph.edges[edge as usize].ends.map(|end| graph.point(end));
-        graph.index.near(ends[0], ends[1], reach, found);
-        let far = graph.metres(graph.edges[edge as usize].other(node));
-        let mut others: Vec<u32> = found
-            .iter()
-            .flat_map(|&e| graph.edges[e as usize].ends)
-            .collect();
+        let it = &graph.edges[edge as usize];
+        let [p, q] = it.ends.map(|end| graph.point(end));
+        graph.index.near(p, q, reach, found);
+        let (far, size) = (graph.metres(it.other(node)), it.size_m);
+        others.clear();
+        let ends = (found.iter()).flat_map(|&e| graph.edges[e as usize].ends);
+        others.extend(ends.filter(|&it| is_beside(graph.metres(it), at, far, wanted.gap * size)));
         others.sort_unstable();
         others.dedup();
-        for other in others {
-            let wants = wanted.gap
-                * graph.edges[edge as usize]
-                    .size_m
-                    .min(graph.size_at_m(other));
-            if let Some(gap) = gap_m(graph, other, edge).filter(|&gap| gap < wants) {
+        for &other in &others {
+            let wants = wanted.gap * size.min(graph.size_at_m(other));
+            if let Some(gap) = gap_below_m(graph, other, edge, wants) {
                 let it = graph.metres(other);
                 let t = to_segment(it, at, far).1;
                 add(

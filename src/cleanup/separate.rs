@@ -37,6 +37,9 @@ const MEET_EDGE: f64 = 0.2;
 /// The same for two nodes.
 const MEET_NODES: f64 = 0.26;
 
+/// As many edges are usually found around one.
+const FOUND: usize = 64;
+
 /// A node too near to something.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Conflict {
@@ -130,8 +133,8 @@ fn push(graph: &Graph, narrow: &Narrow, node: u32, queue: &mut Queue) {
 /// Queues `centre`, and all nodes that its edges are too near to.
 fn push_around(graph: &Graph, narrow: &Narrow, centre: u32, queue: &mut Queue) {
     push(graph, narrow, centre, queue);
-    let mut found = Vec::new();
-    let mut nodes = Vec::new();
+    let mut found = Vec::with_capacity(FOUND);
+    let mut nodes = Vec::with_capacity(FOUND);
     for &edge in &graph.star[centre as usize] {
         let it = &graph.edges[edge as usize];
         let [a, b] = it.ends.map(|node| graph.point(node));
@@ -143,17 +146,15 @@ fn push_around(graph: &Graph, narrow: &Narrow, centre: u32, queue: &mut Queue) {
         let reach = narrow.gap.max(narrow.end) * it.size_m;
         (graph.index).near(a, b, reach / graph.measure.grid().cell_m, &mut found);
         nodes.clear();
-        nodes.extend(
-            found
-                .iter()
-                .flat_map(|&near| graph.edges[near as usize].ends),
-        );
+        let ends = found
+            .iter()
+            .flat_map(|&near| graph.edges[near as usize].ends);
+        nodes.extend(ends.filter(|&node| is_beside(graph.metres(node), a_m, b_m, reach)));
         nodes.sort_unstable();
         nodes.dedup();
         for &node in &nodes {
-            if to_segment(graph.metres(node), a_m, b_m).0 < reach
-                && let Some(ratio) = gap_ratio(graph, narrow, node, edge)
-            {
+            let size = graph.size_at_m(node);
+            if let Some(ratio) = gap_ratio(graph, narrow, (node, size), edge) {
                 queue.push(graph, node, ratio);
             }
         }
@@ -161,11 +162,12 @@ fn push_around(graph: &Graph, narrow: &Narrow, centre: u32, queue: &mut Queue) {
 }
 
 /// How narrow the gap between a node and an edge that is not its own is, if it is too narrow.
-fn gap_ratio(graph: &Graph, narrow: &Narrow, node: u32, edge: u32) -> Option<f64> {
+/// The node comes with its size, metres.
+fn gap_ratio(graph: &Graph, narrow: &Narrow, (node, size_m): (u32, f64), edge: u32) -> Option<f64> {
     let is_end = graph.degree(node) == 1;
     let share = if is_end { narrow.end } else { narrow.gap };
-    let limit = share * graph.size_at_m(node).min(graph.edges[edge as usize].size_m);
-    gap_m(graph, node, edge)
+    let limit = share * size_m.min(graph.edges[edge as usize].size_m);
+    gap_below_m(graph, node, edge, limit)
         .map(|gap| gap / limit)
         .filter(|&ratio| ratio < 1.0)
 }
@@ -189,12 +191,12 @@ fn conflicts(graph: &Graph, narrow: &Narrow, node: u32) -> Vec<Conflict> {
             });
         }
     }
-    let mut found = Vec::new();
+    let mut found = Vec::with_capacity(FOUND);
     let p = graph.point(node);
     let reach = narrow.gap.max(narrow.end) * size / graph.measure.grid().cell_m;
     graph.index.near(p, p, reach, &mut found);
     for edge in found {
-        if let Some(ratio) = gap_ratio(graph, narrow, node, edge) {
+        if let Some(ratio) = gap_ratio(graph, narrow, (node, size), edge) {
             let with = With::Edge(edge);
             conflicts.push(Conflict { ratio, with });
         }
@@ -206,17 +208,26 @@ fn conflicts(graph: &Graph, narrow: &Narrow, node: u32) -> Vec<Conflict> {
 /// Distance from a node to an edge that is not its own, if the domain lies between them; `None`
 /// also if the nearest place of the edge is a neighbour of the node.
 pub(super) fn gap_m(graph: &Graph, node: u32, edge: u32) -> Option<f64> {
+    gap_below_m(graph, node, edge, f64::INFINITY)
+}
+
+/// [`gap_m`] if it is below the limit; what is far is told so by its bounding box.
+pub(super) fn gap_below_m(graph: &Graph, node: u32, edge: u32, limit_m: f64) -> Option<f64> {
     let it = &graph.edges[edge as usize];
-    if it.ends.contains(&node) {
+    let at = graph.metres(node);
+    let (a, b) = graph.ends_m(edge);
+    if it.ends.contains(&node) || !is_beside(at, a, b, limit_m) {
         return None;
     }
-    let [a, b] = it.ends.map(|end| graph.point(end));
-    let side = orient(a, b, graph.point(node));
+    let (gap, t) = to_segment(at, a, b);
+    if gap >= limit_m {
+        return None;
+    }
+    let [p, q] = it.ends.map(|end| graph.point(end));
+    let side = orient(p, q, graph.point(node));
     if (side > 0 && !it.inside[0]) || (side < 0 && !it.inside[1]) {
         return None;
     }
-    let (a, b) = graph.ends_m(edge);
-    let (gap, t) = to_segment(graph.metres(node), a, b);
     let end = if t <= 0.0 {
         it.ends[0]
     } else if t >= 1.0 {
@@ -225,6 +236,11 @@ pub(super) fn gap_m(graph: &Graph, node: u32, edge: u32) -> Option<f64> {
         return Some(gap);
     };
     graph.find(node, end).is_none().then_some(gap)
+}
+
+/// True if `p` is in the bounding box of the segment `a b`, wider by `reach` on all sides.
+pub(super) fn is_beside(p: Xy, a: Xy, b: Xy, reach: f64) -> bool {
+    (0..2).all(|k| a[k].min(b[k]) - reach <= p[k] && p[k] <= a[k].max(b[k]) + reach)
 }
 
 /// Closes one conflict; returns the node in the middle of what changed.

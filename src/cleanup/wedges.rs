@@ -43,6 +43,46 @@ pub(super) fn zip_wedges(graph: &mut Graph, zip: &Zip, nodes: &[u32]) {
             .all(|&it| graph.find(wedge.hub, it).is_some());
         if is_there && zip_one(graph, zip, &wedge) {
             graph.note("zipped", graph.point(wedge.hub), 0.0);
+        } else if is_there {
+            divide(graph, zip, &wedge);
+        }
+    }
+}
+
+/// Divides the long arms of all wedges at `nodes`.
+pub(super) fn divide_wedges(graph: &mut Graph, zip: &Zip, nodes: &[u32]) {
+    for wedge in wedges(graph, zip.below_deg, nodes) {
+        divide(graph, zip, &wedge);
+    }
+}
+
+/// Nodes that an arm is given at most.
+const PARTS_MAX: f64 = 64.0;
+
+/// Gives both arms nodes a mesh size apart, as far as the arms are too near to each other. A long
+/// edge as a whole may be within tolerance neither here nor there, and nothing that looks at nodes
+/// sees how narrow the wedge is between its ends.
+fn divide(graph: &mut Graph, zip: &Zip, wedge: &Wedge) {
+    let size = graph.size_at_m(wedge.hub);
+    let cell_m = graph.measure.grid().cell_m;
+    let near = zip.gap * size / (2.0 * (wedge.angle_deg / 2.0).to_radians().sin());
+    for end in [wedge.a, wedge.b] {
+        let Some(mut rest) = graph.find(wedge.hub, end) else {
+            return;
+        };
+        let (o, a) = (graph.metres(wedge.hub), graph.metres(end));
+        let length = distance(o, a);
+        let parts = (near.min(length - 0.5 * size) / size)
+            .floor()
+            .min(PARTS_MAX);
+        // from the far end: what is left of the arm stays at the hub
+        for k in (1..=parts as u32).rev() {
+            let t = f64::from(k) * size / length;
+            let [x, y] = [0, 1].map(|i| ((o[i] + t * (a[i] - o[i])) / cell_m).round() as i32);
+            let node = graph.bend(rest, Bend::At(Point::new(x, y)), zip.share);
+            if let Some(inner) = node.and_then(|node| graph.find(wedge.hub, node)) {
+                rest = inner;
+            }
         }
     }
 }

@@ -1,10 +1,15 @@
 //! Words and `job.toml` -> Job. Flags win over the file; unknown keys are refused.
 
+use crate::cleanup::rules::HOLD_M;
+use crate::cleanup::rules::PRIORITY_MAX;
+use crate::cleanup::rules::Rule;
+use crate::cleanup::rules::SmallLoops;
 use crate::cli::args::BuildArgs;
 use crate::ingest::CrsChoice;
 use crate::pipeline::job::CELL_M;
 use crate::pipeline::job::CORNER_DEG;
 use crate::pipeline::job::Job;
+use crate::pipeline::job::MATCH_SIDES;
 use crate::pipeline::job::SEAM_BUDGET_QUADS;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -20,13 +25,71 @@ struct JobFile {
     size: Option<f64>,
     #[serde(default)]
     sizes: BTreeMap<String, f64>,
+    #[serde(default)]
+    kinds: BTreeMap<String, KindTable>,
     tolerance: Option<f64>,
     crs: Option<toml::Value>,
     corner: Option<f64>,
     cell: Option<f64>,
     tile: Option<f64>,
     seam_budget: Option<u32>,
+    match_sides: Option<f64>,
     threads: Option<usize>,
+}
+
+/// The keys of a table `[kinds.NAME]`: what clean-up may do with lines of this kind.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct KindTable {
+    tolerance_m: Option<f64>,
+    #[serde(default)]
+    priority: i32,
+    small_loops: Option<LoopWord>,
+    hold: Option<bool>,
+    hold_m: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum LoopWord {
+    Keep,
+    Collapse,
+}
+
+impl KindTable {
+    fn rule(&self, kind: &str) -> Result<Rule, String> {
+        let metres = |key: &str, value: Option<f64>| match value {
+            Some(it) if !(it.is_finite() && it >= 0.0) => Err(format!(
+                "kinds.{kind}.{key} is {it}: it must be zero or a positive number of metres"
+            )),
+            good => Ok(good),
+        };
+        if self.priority.abs() > PRIORITY_MAX {
+            return Err(format!(
+                "kinds.{kind}.priority is {}: it must lie in -{PRIORITY_MAX}..{PRIORITY_MAX}",
+                self.priority
+            ));
+        }
+        let hold_m = match (self.hold, metres("hold_m", self.hold_m)?) {
+            (Some(false), Some(_)) => {
+                return Err(format!(
+                    "kinds.{kind}: `hold = false` and `hold_m` contradict each other"
+                ));
+            }
+            (_, Some(hold_m)) => Some(hold_m),
+            (Some(true), None) => Some(HOLD_M),
+            (_, None) => None,
+        };
+        Ok(Rule {
+            tolerance_m: metres("tolerance_m", self.tolerance_m)?,
+            priority: self.priority,
+            small_loops: match self.small_loops {
+                Some(LoopWord::Keep) => SmallLoops::Keep,
+                _ => SmallLoops::Collapse,
+            },
+            hold_m,
+        })
+    }
 }
 
 /// The job that these words ask for, or a sentence that says what is wrong with them.
@@ -57,12 +120,16 @@ pub fn job(args: &BuildArgs) -> Result<Job, String> {
         }
         (None, None) => CrsChoice::FromFile,
     };
+    let rules = (file.kinds.into_iter())
+        .map(|(kind, table)| table.rule(&kind).map(|rule| (kind, rule)))
+        .collect::<Result<Vec<_>, String>>()?;
     let job = Job {
         input,
         output,
         size_m,
         sizes_m: file.sizes.into_iter().collect(),
         tolerance_m: args.tolerance.or(file.tolerance),
+        rules,
         crs,
         cell_m: file.cell.unwrap_or(CELL_M),
         tile_m: args.tile.or(file.tile),
@@ -71,6 +138,7 @@ pub fn job(args: &BuildArgs) -> Result<Job, String> {
             .seam_budget
             .or(file.seam_budget)
             .unwrap_or(SEAM_BUDGET_QUADS),
+        match_sides: (args.match_sides.or(file.match_sides)).unwrap_or(MATCH_SIDES),
         threads: args.threads.or(file.threads).unwrap_or(0),
         force: args.force,
         resume: args.resume,
@@ -137,6 +205,12 @@ fn validate(job: &Job) -> Result<(), String> {
         return Err(format!(
             "corner is {} degrees: it must lie in 5..90",
             job.corner_deg
+        ));
+    }
+    if !(0.0..=1000.0).contains(&job.match_sides) {
+        return Err(format!(
+            "match_sides is {}: it must lie in 0..1000",
+            job.match_sides
         ));
     }
     if job.seam_budget_quads < 1000 {

@@ -42,14 +42,6 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
     let stages: Vec<Value> = (outcome.stages.iter())
         .map(|it| json!({"stage": it.stage, "seconds": it.seconds, "note": it.note}))
         .collect();
-    let methods: serde_json::Map<String, Value> = (METHODS.iter().zip(&q.methods))
-        .map(|(name, it)| {
-            (
-                name.to_string(),
-                json!({"subdomains": it.subdomains, "quads": it.quads}),
-            )
-        })
-        .collect();
     let verdict = verdict(&outcome.verdict);
     let json = json!({
         "output": job.output.display().to_string(),
@@ -66,22 +58,59 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         "stages": stages,
         "peak_memory_mb": outcome.peak_memory_bytes as f64 / 1e6,
         "quality": quality(&outcome.verdict),
-        "methods": methods,
+        "methods": methods(&outcome.verdict),
+        "last_resort": {
+            "subdomains": q.last_resort.subdomains,
+            "quads": q.last_resort.quads,
+            "subdomains_pct": pct(q.last_resort.subdomains, outcome.subdomains as u64),
+            "quads_pct": pct(q.last_resort.quads, quads),
+        },
         "displacement_max_m": outcome.displacement_max_m,
         "displacement_p99_m": outcome.displacement_p99_m,
         "length_m": outcome.length_m,
         "length_dropped_m": outcome.length_dropped_m,
+        "length_shrunk_m": outcome.length_shrunk_m,
         "ilp_gap": outcome.ilp_gap,
+        "pattern_gap": outcome.pattern_gap,
+        "blocks": outcome.blocks[0],
+        "blocks_fit": outcome.blocks[1],
+        "blocks_fit_without_wish": outcome.blocks[2],
         "odd_share": outcome.odd_share,
         "largest_patch_over_budget": outcome.largest_patch_over_budget,
         "findings": outcome.findings,
     });
-    let mut text = format!(
-        "{}: {quads} quads in {} sub-domains, {:.1} s, {:.0} MB\n\
+    let mut text = first_lines(job, outcome);
+    for (what, count) in &outcome.findings {
+        let _ = writeln!(text, "finding: {count} x {what}");
+    }
+    text.push_str(&verdict.text);
+    Summary {
+        text,
+        json,
+        good: outcome.verdict.holds(),
+    }
+}
+
+fn methods(verdict: &Verdict) -> Value {
+    (METHODS.iter().zip(&verdict.quality.methods))
+        .map(|(name, it)| {
+            let counts = json!({"subdomains": it.subdomains, "quads": it.quads});
+            (name.to_string(), counts)
+        })
+        .collect::<serde_json::Map<String, Value>>()
+        .into()
+}
+
+/// The figures that one looks at first.
+fn first_lines(job: &Job, outcome: &Outcome) -> String {
+    let q = &outcome.verdict.quality;
+    format!(
+        "{}: {} quads in {} sub-domains, {:.1} s, {:.0} MB\n\
          scaled Jacobian: mean {:.3}, 1 % {:.2}, least {:.3}; irregular nodes {:.1} %\n\
-         lines moved at most {:.2} m (99 % below {:.2} m); dropped {:.1} m of {:.0} m\n\
-         parity: gap {:.4} %\n",
+         lines moved at most {:.2} m (99 % below {:.2} m); dropped {:.1} m of {:.0} m, {:.1} m became nodes\n\
+         parity: gap {:.4} %; {} of {} few-sided sub-domains fit a pattern, gap {:.2} %\n",
         job.output.display(),
+        q.scaled_jacobian.count,
         outcome.subdomains,
         outcome.seconds(),
         outcome.peak_memory_bytes as f64 / 1e6,
@@ -93,17 +122,17 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         outcome.displacement_p99_m,
         outcome.length_dropped_m,
         outcome.length_m,
+        outcome.length_shrunk_m,
         100.0 * outcome.ilp_gap,
-    );
-    for (what, count) in &outcome.findings {
-        let _ = writeln!(text, "finding: {count} x {what}");
-    }
-    text.push_str(&verdict.text);
-    Summary {
-        text,
-        json,
-        good: outcome.verdict.holds(),
-    }
+        outcome.blocks[1],
+        outcome.blocks[0],
+        100.0 * outcome.pattern_gap,
+    )
+}
+
+/// A share in percent.
+fn pct(part: u64, whole: u64) -> f64 {
+    100.0 * part as f64 / whole.max(1) as f64
 }
 
 fn quality(verdict: &Verdict) -> Value {

@@ -16,7 +16,13 @@ use std::io::Write;
 
 /// Words for the reasons, by their stored number; what was clipped lies outside the domain and is
 /// no change.
-const REASONS: [&str; 4] = ["clipped", "short-end", "small-loop", "beyond-tolerance"];
+const REASONS: [&str; 5] = [
+    "clipped",
+    "short-end",
+    "small-loop",
+    "beyond-tolerance",
+    "shrunk",
+];
 const CLIPPED: u8 = 0;
 
 pub(crate) fn write(mesh: &Mesh, to: &mut Destination) -> Result<Stats, Error> {

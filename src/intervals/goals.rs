@@ -12,7 +12,7 @@ pub struct Goals {
     pub lower: Vec<u32>,
     /// Largest count that sizes allow; equal to `lower` for a fixed count.
     pub upper: Vec<u32>,
-    /// Weight of the curve's deviation; 1 unless said otherwise.
+    /// Weight of the curve's deviation; 1 for a straight curve that is not shorter than the size.
     pub weight: Vec<f64>,
     /// Sub-domains with three to six sides, by id: they can be mapped if their counts fit.
     pub blocks: Vec<Block>,
@@ -86,11 +86,17 @@ pub fn has_halves(sides: usize) -> bool {
 }
 
 impl Goals {
-    /// What count `n` costs on `curve`: weight x (max(n / g, g / n) - 1), with g the goal but at
-    /// least the lower bound. Convex in n, zero at n = g, and symmetric in ratio: half as many is as bad as twice as many.
+    /// What count `n` costs on `curve`: weight x (max(n / g, g / n)^2 - 1), with g the goal but at
+    /// least the lower bound. Convex in n, zero at n = g, and symmetric in ratio: half as many is
+    /// as bad as twice as many.
     pub fn cost(&self, curve: usize, n: u32) -> f64 {
+        self.weight[curve] * self.deviation(curve, n)
+    }
+
+    /// The cost without its weight.
+    pub fn deviation(&self, curve: usize, n: u32) -> f64 {
         let goal = self.goal[curve].max(f64::from(self.lower[curve]));
         let n = f64::from(n);
-        self.weight[curve] * ((n / goal).max(goal / n) - 1.0)
+        (n / goal).max(goal / n).powi(2) - 1.0
     }
 }

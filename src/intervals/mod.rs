@@ -21,7 +21,10 @@
 //!    sufficient, not necessary: it may forbid a split that another share of the side would allow.
 //! 3. `blocks`: the sub-domains with three to six sides, whose counts `parity` wishes to fit one
 //!    pattern, because mapped patches are the best ones. Corners as mapping chooses them.
-//! 4. Costs are those of [`Goals::cost`]: convex, relative, zero at the goal.
+//! 4. Costs are those of [`Goals::cost`]: convex, relative, zero at the goal. `apportion` says what
+//!    one more interval costs on the edge of a curve that can best take it: the curve's weight.
+//!    So the odd interval that parity asks for goes to long edges, never to one below the size if
+//!    there is a way around it.
 //!
 //! # Cost
 //! O(edges + half-curves), 24 bytes a curve.
@@ -34,8 +37,10 @@ use crate::domain::size::SizeWish;
 use crate::intervals::goals::Goals;
 use crate::intervals::wish::EdgeWish;
 use crate::noding::arrangement::Arrangement;
+use crate::partition::subdomains::Curve;
 use crate::partition::subdomains::Partition;
 
+pub mod apportion;
 mod blocks;
 pub mod check;
 pub mod goals;
@@ -65,13 +70,18 @@ pub fn plan(
     options: &Options,
 ) -> Goals {
     let mut goals = Goals::default();
-    for curve in &partition.curves {
-        let edges: Vec<EdgeWish> = (curve.edges.iter())
+    let wishes = |curve: &Curve| -> Vec<EdgeWish> {
+        (curve.edges.iter())
             .map(|&edge| wish::edge_wish(domain, sizes, arrangement, edge))
-            .collect();
-        push_curve(&mut goals, &edges, options);
+            .collect()
+    };
+    for curve in &partition.curves {
+        push_curve(&mut goals, &wishes(curve), options);
     }
     minima::raise(&mut goals, arrangement, partition, options);
+    for (id, curve) in partition.curves.iter().enumerate() {
+        goals.weight[id] = weight(&goals, id, &wishes(curve));
+    }
     goals.blocks = blocks::blocks(&goals, arrangement, partition, options);
     goals
 }
@@ -94,3 +104,15 @@ fn push_curve(goals: &mut Goals, edges: &[EdgeWish], options: &Options) {
     });
     goals.weight.push(1.0);
 }
+
+/// How much dearer one more interval is than the curve's goal tells: the sum of the goals of short
+/// edges knows nothing of how short each is.
+fn weight(goals: &Goals, curve: usize, edges: &[EdgeWish]) -> f64 {
+    let lower = goals.lower[curve];
+    let near = (goals.goal[curve].round() as u32).clamp(lower, goals.upper[curve]);
+    let told = goals.deviation(curve, near + 1) - goals.deviation(curve, near);
+    apportion::next_cost(edges, near).map_or(1.0, |asked| (asked / told).clamp(1.0, WEIGHT_MAX))
+}
+
+/// Keeps sums of costs in whole units within 64 bits, whatever the input.
+const WEIGHT_MAX: f64 = 1e3;

@@ -28,7 +28,8 @@ const RINGS_MAX: usize = 5;
 /// Rounds: a filling may leave a bad quad at its own rim, in thin places.
 const ROUNDS: usize = 3;
 
-/// Replaces bad quads of `draft` and their surroundings; returns how many quads were put in.
+/// Replaces bad quads of `draft` and their surroundings; returns how many quads of the
+/// result were put in.
 pub(crate) fn refill(draft: &mut Draft, visits: &Visits, size_m: f64) -> usize {
     let mut filled = 0;
     for _ in 0..ROUNDS {
@@ -58,6 +59,9 @@ pub(crate) fn refill(draft: &mut Draft, visits: &Visits, size_m: f64) -> usize {
         if fillings.is_empty() {
             break;
         }
+        // What an earlier round put in are the last quads.
+        let earlier = &taken[taken.len() - filled..];
+        filled -= earlier.iter().filter(|&&it| it).count();
         filled += fillings.iter().map(Vec::len).sum::<usize>();
         replace(draft, &taken, fillings);
     }

@@ -7,6 +7,7 @@ use crate::meshing::improve::Cleaner;
 use crate::meshing::improve::Pass;
 use crate::meshing::kernel::Kernel;
 use crate::meshing::patch::Loops;
+use crate::meshing::patch::Method;
 use crate::meshing::patch::Patch;
 use crate::meshing::smooth::PERFECT;
 use crate::meshing::smooth::lift_worst;
@@ -40,13 +41,15 @@ pub(crate) fn finish(
     loops: &Loops,
     effort: Effort,
 ) -> Option<Patch> {
+    let mut refilled = 0;
     if effort == Effort::Clean {
         improve(&mut draft, visits, loops.size_m);
-        if cavity::refill(&mut draft, visits, loops.size_m) > 0 {
+        refilled = cavity::refill(&mut draft, visits, loops.size_m);
+        if refilled > 0 {
             smooth_only(&mut draft, visits, loops.size_m);
         }
     }
-    let patch = merge_visits(draft, visits, loops);
+    let patch = merge_visits(draft, visits, loops, refilled);
     check(loops, &patch).is_ok().then_some(patch)
 }
 
@@ -93,7 +96,11 @@ fn smooth(cleaner: &mut Cleaner, sweeps: usize, rest: f64) {
 }
 
 /// Visits at one place become one node; unused nodes go.
-fn merge_visits(draft: Draft, visits: &Visits, loops: &Loops) -> Patch {
+fn merge_visits(draft: Draft, visits: &Visits, loops: &Loops, refilled: usize) -> Patch {
+    let by_last_resort = match draft.method {
+        Method::LastResort => draft.quads.len(),
+        _ => refilled,
+    };
     let mut number = vec![NONE; draft.nodes.len()];
     number[..draft.visits].copy_from_slice(&visits.unique);
     let mut nodes = loops.nodes.clone();
@@ -110,5 +117,6 @@ fn merge_visits(draft: Draft, visits: &Visits, loops: &Loops) -> Patch {
         nodes,
         quads,
         method: draft.method,
+        last_resort_quads: by_last_resort as u32,
     }
 }

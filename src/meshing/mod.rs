@@ -55,8 +55,6 @@ mod kernel;
 mod last_resort;
 mod lattice;
 mod looping;
-#[cfg(test)]
-mod looping_tests;
 mod mapping;
 mod pairing;
 pub mod patch;

@@ -52,4 +52,7 @@ pub struct Patch {
     pub quads: Vec<[u32; 4]>,
     /// The method that won.
     pub method: Method,
+    /// Quads that the last resort made: all of them if it won, else those in the holes that it
+    /// filled where the winner failed.
+    pub last_resort_quads: u32,
 }

@@ -1,5 +1,8 @@
 //! A job: everything that a build needs to know, validated.
 
+use crate::cleanup::Tolerance;
+use crate::cleanup::rules::Rule;
+use crate::cleanup::rules::SmallLoops;
 use crate::ingest::CrsChoice;
 use std::path::PathBuf;
 
@@ -14,8 +17,10 @@ pub struct Job {
     pub size_m: f64,
     /// Wished edge length along lines of a kind, metres.
     pub sizes_m: Vec<(String, f64)>,
-    /// How far clean-up may move a line, metres; half the size if not given.
+    /// How far clean-up may move a line, metres; half the wished size along it if not given.
     pub tolerance_m: Option<f64>,
+    /// What clean-up may do with lines of a kind.
+    pub rules: Vec<(String, Rule)>,
     /// What the coordinates mean.
     pub crs: CrsChoice,
     /// Side of a grid cell, metres.
@@ -26,6 +31,9 @@ pub struct Job {
     pub corner_deg: f64,
     /// A sub-domain with more quads than this is cut by seams.
     pub seam_budget_quads: u32,
+    /// What it is worth that the counts of a few-sided sub-domain fit a pattern, in the unit of what
+    /// counts cost; 0 for parity alone.
+    pub match_sides: f64,
     /// Worker threads; 0 for as many as there are cores.
     pub threads: usize,
     /// Replace an existing output.
@@ -44,10 +52,21 @@ pub const CELL_M: f64 = 0.001;
 /// and holds about 2 MB.
 pub const SEAM_BUDGET_QUADS: u32 = 20_000;
 
+/// Worth of a pattern unless the job says otherwise: see the table in `benches/README.md`.
+pub const MATCH_SIDES: f64 = 0.5;
+
 impl Job {
-    /// The tolerance in force, metres: as given, or half the size.
+    /// The tolerance where no kind says otherwise: as given, or half the size.
+    pub fn tolerance(&self) -> Tolerance {
+        match self.tolerance_m {
+            Some(metres) => Tolerance::Metres(metres),
+            None => Tolerance::ShareOfSize(0.5),
+        }
+    }
+
+    /// The same in metres, where the size is the job's.
     pub fn tolerance_in_force_m(&self) -> f64 {
-        self.tolerance_m.unwrap_or(0.5 * self.size_m)
+        self.tolerance().at_m(self.size_m)
     }
 
     /// The options as one line of JSON, for the output's own record. Threads, tiles and paths are
@@ -56,14 +75,32 @@ impl Job {
         let kinds: serde_json::Map<String, serde_json::Value> = (self.sizes_m.iter())
             .map(|(kind, size_m)| (kind.clone(), (*size_m).into()))
             .collect();
+        let rules: serde_json::Map<String, serde_json::Value> = (self.rules.iter())
+            .map(|(kind, rule)| (kind.clone(), echo_rule(rule)))
+            .collect();
         serde_json::json!({
             "size_m": self.size_m,
             "sizes_m": kinds,
             "tolerance_m": self.tolerance_in_force_m(),
+            "tolerance_given": self.tolerance_m.is_some(),
+            "kinds": rules,
             "cell_m": self.cell_m,
             "corner_deg": self.corner_deg,
             "seam_budget_quads": self.seam_budget_quads,
+            "match_sides": self.match_sides,
         })
         .to_string()
     }
+}
+
+fn echo_rule(rule: &Rule) -> serde_json::Value {
+    serde_json::json!({
+        "tolerance_m": rule.tolerance_m,
+        "priority": rule.priority,
+        "small_loops": match rule.small_loops {
+            SmallLoops::Collapse => "collapse",
+            SmallLoops::Keep => "keep",
+        },
+        "hold_m": rule.hold_m,
+    })
 }

@@ -138,8 +138,11 @@ fn finish(
     writer: Writer,
     receipts: Vec<ChunkReceipt>,
 ) -> Result<(), Error> {
+    let kinds = 0..plan.domain.kinds.len();
+    let tolerance = |kind| plan.cleaning.tolerance_m(&plan.sizes, kind);
     writer.write_lines(&LineWork {
         domain: &plan.domain,
+        tolerance_by_kind_m: &kinds.map(tolerance).collect::<Vec<f64>>(),
         dropped: &plan.city.dropped,
         changes: &plan.city.changes,
         tally: &plan.city.tally,

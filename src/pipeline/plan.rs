@@ -7,6 +7,7 @@ use crate::cleanup::changes::Change;
 use crate::cleanup::changes::Dropped;
 use crate::cleanup::changes::Reason;
 use crate::cleanup::changes::Tally;
+use crate::cleanup::rules::Rule;
 use crate::domain::finding::Finding;
 use crate::domain::line::Domain;
 use crate::domain::line::Role;
@@ -36,6 +37,8 @@ pub struct Plan {
     pub domain: Domain,
     /// Wished sizes.
     pub sizes: SizeWish,
+    /// What clean-up was allowed.
+    pub cleaning: cleanup::Options,
     /// What became of it: arrangement, partition, goals, counts, changes, findings.
     pub city: Parked,
     /// First global ids of nodes on curves.
@@ -82,10 +85,11 @@ pub(super) fn plan(
     let mut findings = Vec::new();
     let domain = read(job, watch, &mut findings)?;
     let sizes = sizes(job, &domain)?;
+    let cleaning = cleaning(job, &domain)?;
     let parked = resume_from.and_then(|folder| spill::fetch(folder, &key(job, &domain)));
     let city = match parked {
         Some(city) => city,
-        None => city(job, &domain, &sizes, watch, findings)?,
+        None => city(job, &domain, &sizes, &cleaning, watch, findings)?,
     };
     let points = city.arrangement.points.len();
     let first = boundary::numbering(&city.partition, &city.balance.counts, points);
@@ -98,6 +102,7 @@ pub(super) fn plan(
     Ok(Plan {
         domain,
         sizes,
+        cleaning,
         city,
         first,
     })
@@ -114,10 +119,11 @@ fn city(
     job: &Job,
     domain: &Domain,
     sizes: &SizeWish,
+    cleaning: &cleanup::Options,
     watch: &Stopwatch,
     mut findings: Vec<Finding>,
 ) -> Result<Parked, Error> {
-    let cleaned = clean(job, domain, sizes, watch, &mut findings)?;
+    let cleaned = clean(job, domain, sizes, cleaning, watch, &mut findings)?;
     let (arrangement, partition) = cut(
         job,
         domain,
@@ -156,24 +162,36 @@ fn read(job: &Job, watch: &Stopwatch, findings: &mut Vec<Finding>) -> Result<Dom
     })
 }
 
+/// The row of a kind that the job's `table` names.
+fn row_of_kind(domain: &Domain, table: &str, kind: &str) -> Result<usize, Error> {
+    let known = domain.kinds.iter().position(|it| it == kind);
+    known.ok_or_else(|| {
+        let named = domain.kinds.iter().filter(|it| !it.is_empty());
+        let named: Vec<&str> = named.map(String::as_str).collect();
+        Error::Job(format!(
+            "{table}.{kind}: the input has no lines of this kind; it has {}",
+            named.join(", ")
+        ))
+    })
+}
+
+/// What clean-up may do, by the kinds that the input has.
+fn cleaning(job: &Job, domain: &Domain) -> Result<cleanup::Options, Error> {
+    let mut by_kind = vec![Rule::FREE; domain.kinds.len()];
+    for (kind, rule) in &job.rules {
+        by_kind[row_of_kind(domain, "kinds", kind)?] = *rule;
+    }
+    Ok(cleanup::Options {
+        tolerance: job.tolerance(),
+        by_kind,
+    })
+}
+
 /// The sizes of the job, by the kinds that the input has.
 fn sizes(job: &Job, domain: &Domain) -> Result<SizeWish, Error> {
     let mut sizes = SizeWish::uniform(job.size_m, domain.kinds.len());
     for (kind, size_m) in &job.sizes_m {
-        let known = domain.kinds.iter().position(|it| it == kind);
-        let Some(known) = known else {
-            return Err(Error::Job(format!(
-                "sizes.{kind}: the input has no lines of this kind; it has {}",
-                domain
-                    .kinds
-                    .iter()
-                    .filter(|it| !it.is_empty())
-                    .cloned()
-                    .collect::<Vec<_>>()
-                    .join(", ")
-            )));
-        };
-        sizes.by_kind_m[known] = *size_m;
+        sizes.by_kind_m[row_of_kind(domain, "sizes", kind)?] = *size_m;
     }
     let rim = (domain.lines.iter()).filter(|it| it.role == Role::Boundary);
     let points = || rim.clone().flat_map(|it| &it.points);
@@ -197,6 +215,7 @@ fn clean(
     job: &Job,
     domain: &Domain,
     sizes: &SizeWish,
+    options: &cleanup::Options,
     watch: &Stopwatch,
     findings: &mut Vec<Finding>,
 ) -> Result<Cleaned, Error> {
@@ -208,10 +227,7 @@ fn clean(
         Ok(((noded, clipped), note))
     })?;
     watch.stage("cleanup", 1, |_| {
-        let options = cleanup::Options {
-            tolerance: cleanup::Tolerance::Metres(job.tolerance_in_force_m()),
-        };
-        let made = cleanup::clean(domain, sizes, noded, &options);
+        let made = cleanup::clean(domain, sizes, noded, options);
         findings.extend(made.findings);
         let mut dropped: Vec<Dropped> = clipped.iter().map(clipped_stretch).collect();
         dropped.extend(made.dropped);
@@ -300,13 +316,21 @@ fn balance(
                 events_max: 1 << 31,
                 nodes_max: 1000,
                 rows_max: 20_000,
-                worth: 0.0,
+                worth: job.match_sides,
                 rounds_max: 20,
                 climb_max: 60,
                 neighbourhoods_max: 20,
             },
         )?;
-        let note = format!("gap {:.4} %, {} rows", 100.0 * balance.gap(), balance.rows);
+        let fit = &balance.structure;
+        let note = format!(
+            "gap {:.4} %; {} of {} blocks fit a pattern ({} without the wish), gap {:.2} %",
+            100.0 * balance.gap(),
+            fit.mapped,
+            fit.blocks,
+            fit.mapped_before,
+            100.0 * balance.structure_gap()
+        );
         Ok(((goals, balance), note))
     })
 }

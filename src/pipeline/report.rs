@@ -344,7 +344,15 @@ fn methods(quality: &Quality) -> Table {
         "mean scaled Jacobian",
         "least",
     ];
-    table("Methods", "", &head, rows)
+    let last = quality.last_resort;
+    let note = format!(
+        "The last resort made {} quads ({:.3} %) in {} sub-domains, holes in patches of other \
+         methods included.",
+        last.quads,
+        100.0 * last.quads as f64 / all.max(1) as f64,
+        last.subdomains
+    );
+    table("Methods", &note, &head, rows)
 }
 
 fn places(title: &str, note: &str, places: &[Place]) -> Table {

@@ -78,11 +78,12 @@ struct BalanceRow {
 }
 
 /// Reasons by number; the order of `Reason`.
-const REASONS: [Reason; 4] = [
+const REASONS: [Reason; 5] = [
     Reason::Clipped,
     Reason::ShortEnd,
     Reason::SmallLoop,
     Reason::BeyondTolerance,
+    Reason::Shrunk,
 ];
 
 impl Plan {

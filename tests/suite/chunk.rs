@@ -191,6 +191,7 @@ pub fn tiny() -> Tiny {
     let west = PatchRecord {
         subdomain: 0,
         method: Method::Mapping,
+        last_resort_quads: 0,
         boundary: vec![0, 8, 2, 13, 3, 11, 1, 12],
         interior: vec![[10.0, 10.0]],
         quads: vec![[0, 1, 8, 7], [1, 2, 3, 8], [7, 8, 5, 6], [8, 3, 4, 5]],
@@ -198,6 +199,7 @@ pub fn tiny() -> Tiny {
     let east = PatchRecord {
         subdomain: 1,
         method: Method::Looping,
+        last_resort_quads: 2,
         boundary: vec![2, 9, 5, 6, 4, 7, 10, 3, 13],
         interior: vec![],
         quads: vec![[0, 1, 4, 8], [1, 2, 3, 4], [8, 4, 6, 7], [4, 3, 5, 6]],
@@ -263,6 +265,7 @@ impl Tiny {
     pub fn write_parts(&self, writer: &Writer) -> Vec<ChunkReceipt> {
         writer.write_frame(&self.frame).unwrap();
         let lines = LineWork {
+            tolerance_by_kind_m: &vec![1.0; self.domain.kinds.len()],
             domain: &self.domain,
             dropped: &self.dropped,
             changes: &self.changes,

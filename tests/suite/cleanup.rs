@@ -4,44 +4,61 @@ use polder::cleanup;
 use polder::cleanup::Cleaned;
 use polder::cleanup::Options;
 use polder::cleanup::Tolerance;
+use polder::cleanup::rules::Rule;
+use polder::cleanup::rules::SmallLoops;
 use polder::domain::line::Domain;
 use polder::domain::line::Line;
 use polder::domain::line::Role;
 use polder::domain::size::SizeWish;
 use polder::geometry::grid::Grid;
 use polder::geometry::point::Point;
+use polder::geometry::point::Xy;
 use polder::noding;
 use polder::noding::arrangement::Arrangement;
 use proptest::prelude::*;
 
-const OPTIONS: Options = Options {
-    tolerance: Tolerance::ShareOfSize(0.5),
-};
+/// Half the size, no rule for any kind.
+fn usual(domain: &Domain) -> Options {
+    Options {
+        tolerance: Tolerance::ShareOfSize(0.5),
+        by_kind: vec![Rule::FREE; domain.kinds.len()],
+    }
+}
 
 /// What a line is, and its points in millimetres.
 type Drawn<'a> = (&'a str, Vec<(i32, i32)>);
 
-/// Lines in millimetres; the first is the boundary, rings named "hole" are holes.
+/// Lines in millimetres; the first is the boundary, rings named "hole" are holes. What follows a
+/// colon is a kind.
 fn domain(lines: &[(&str, Vec<(i32, i32)>)]) -> Domain {
+    let kind_of = |what: &str| {
+        what.split_once(':')
+            .map_or(String::new(), |it| it.1.to_string())
+    };
+    let mut kinds: Vec<String> = lines.iter().map(|it| kind_of(it.0)).collect();
+    kinds.push(String::new());
+    kinds.sort();
+    kinds.dedup();
     let line = |(source, (what, points)): (usize, &Drawn)| Line {
         source: source as u32,
-        role: match *what {
+        role: match what.split(':').next().unwrap() {
             "boundary" => Role::Boundary,
             "hole" => Role::Hole,
             _ => Role::Constraint,
         },
-        kind: 0,
+        kind: kinds.binary_search(&kind_of(what)).unwrap() as u16,
         name: String::new(),
         points: points.iter().map(|&(x, y)| Point::new(x, y)).collect(),
     };
+    let lines = lines.iter().enumerate().map(line).collect();
     Domain {
         grid: Grid {
             origin_m: [0.0, 0.0],
             cell_m: 0.001,
         },
         epsg: None,
-        kinds: vec![String::new()],
-        lines: lines.iter().enumerate().map(line).collect(),
+        kinds,
+        lines,
         digest: 0,
     }
 }
@@ -55,10 +72,14 @@ fn noded(domain: &Domain) -> Arrangement {
 
 /// Cleans at `size_m` and checks all promises.
 fn cleaned(domain: &Domain, size_m: f64) -> Cleaned {
-    let sizes = SizeWish::uniform(size_m, 1);
+    cleaned_by(domain, size_m, &usual(domain))
+}
+
+fn cleaned_by(domain: &Domain, size_m: f64, options: &Options) -> Cleaned {
+    let sizes = SizeWish::uniform(size_m, domain.kinds.len());
     let input = noded(domain);
-    let cleaned = cleanup::clean(domain, &sizes, input.clone(), &OPTIONS);
-    let verdict = cleanup::check::check(domain, &sizes, &OPTIONS, &input, &cleaned);
+    let cleaned = cleanup::clean(domain, &sizes, input.clone(), options);
+    let verdict = cleanup::check::check(domain, &sizes, options, &input, &cleaned);
     assert_eq!(verdict, Ok(()));
     cleaned
 }
@@ -139,7 +160,7 @@ proptest! {
 
     #[test]
     fn no_tolerance_no_change(domain in messy_domain()) {
-        let off = Options { tolerance: Tolerance::Metres(0.0) };
+        let off = Options { tolerance: Tolerance::Metres(0.0), ..usual(&domain) };
         let input = noded(&domain);
         let result = cleanup::clean(&domain, &SizeWish::uniform(8.0, 1), input.clone(), &off);
         prop_assert_eq!(result.arrangement, input);
@@ -150,13 +171,14 @@ proptest! {
     fn a_second_run_finds_little_to_do(domain in messy_domain()) {
         let once = cleaned(&domain, 8.0).arrangement;
         let sizes = SizeWish::uniform(8.0, 1);
-        let twice = cleanup::clean(&domain, &sizes, once.clone(), &OPTIONS).arrangement;
+        let twice = cleanup::clean(&domain, &sizes, once.clone(), &usual(&domain)).arrangement;
         let (before, after) = (once.edges.len(), twice.edges.len());
         prop_assert!(before.abs_diff(after) <= 2 + before / 10, "{} {}", before, after);
     }
 }
 
-/// One file a case: `size` metres, then lines `what x y x y ...` in metres. The expectation counts.
+/// One file a case: `size` metres, then lines `what[:kind] x y x y ...` in metres; `rule KIND KEY
+/// VALUE ...` for a kind. The expectation counts, and says how far each line of a kind moved.
 #[test]
 fn small_cases() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/cleanup");
@@ -180,12 +202,17 @@ fn small_cases() {
 fn outcome(text: &str) -> String {
     let mut size_m = 0.0;
     let mut lines = Vec::new();
+    let mut rules = Vec::new();
     for row in text
         .lines()
         .filter(|row| !row.is_empty() && !row.starts_with('#'))
     {
         let mut words = row.split_whitespace();
         let what = words.next().unwrap();
+        if what == "rule" {
+            rules.push(words.collect::<Vec<_>>());
+            continue;
+        }
         let values: Vec<f64> = words.map(|word| word.parse().unwrap()).collect();
         if what == "size" {
             size_m = values[0];
@@ -197,7 +224,13 @@ fn outcome(text: &str) -> String {
             values.chunks(2).map(|xy| (mm(xy[0]), mm(xy[1]))).collect(),
         ));
     }
-    let result = cleaned(&domain(&lines), size_m);
+    let domain = domain(&lines);
+    let mut options = usual(&domain);
+    for words in rules {
+        let kind = domain.kinds.iter().position(|it| it == words[0]).unwrap();
+        options.by_kind[kind] = rule(&words[1..]);
+    }
+    let result = cleaned_by(&domain, size_m, &options);
     let mut rows = vec![format!(
         "nodes {} edges {}",
         result.arrangement.points.len(),
@@ -222,5 +255,66 @@ fn outcome(text: &str) -> String {
             .iter()
             .map(|it| format!("finding {}", it.what)),
     );
+    let of_kind = (0..domain.lines.len()).filter(|&line| domain.lines[line].kind != 0);
+    rows.extend(of_kind.map(|line| {
+        let kind = &domain.kinds[usize::from(domain.lines[line].kind)];
+        let moved_m = moved_m(&domain, &result.arrangement, line);
+        format!("line {line} {kind} moved {moved_m:.2}")
+    }));
     rows.join("\n")
+}
+
+fn rule(words: &[&str]) -> Rule {
+    let mut rule = Rule::FREE;
+    for pair in words.chunks(2) {
+        let number = || pair[1].parse().unwrap();
+        match pair[0] {
+            "tolerance_m" => rule.tolerance_m = Some(number()),
+            "priority" => rule.priority = number() as i32,
+            "hold_m" => rule.hold_m = Some(number()),
+            "small_loops" => rule.small_loops = SmallLoops::Keep,
+            other => panic!("no such key: {other}"),
+        }
+    }
+    rule
+}
+
+/// Largest distance between a line and the edges that carry it, both ways, metres; infinite if none
+/// does.
+fn moved_m(domain: &Domain, arrangement: &Arrangement, line: usize) -> f64 {
+    let local = |p: Point| domain.grid.local_m(p);
+    let points: Vec<Xy> = domain.lines[line]
+        .points
+        .iter()
+        .map(|&p| local(p))
+        .collect();
+    let segments: Vec<[Xy; 2]> = points.windows(2).map(|it| [it[0], it[1]]).collect();
+    let carries = |edge: &usize| {
+        let pieces = arrangement.pieces_of(*edge as u32);
+        pieces.iter().any(|piece| piece.line as usize == line)
+    };
+    let edges: Vec<[Xy; 2]> = (0..arrangement.edges.len())
+        .filter(carries)
+        .map(|edge| arrangement.edges[edge].map(|node| local(arrangement.points[node as usize])))
+        .collect();
+    let from_to = |from: &[[Xy; 2]], to: &[[Xy; 2]]| {
+        let samples = from.iter().flat_map(|[a, b]| {
+            (0..=100).map(move |k| {
+                let t = f64::from(k) / 100.0;
+                [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
+            })
+        });
+        samples.map(|p| nearest_m(p, to)).fold(0.0, f64::max)
+    };
+    from_to(&segments, &edges).max(from_to(&edges, &segments))
+}
+
+fn nearest_m(p: Xy, segments: &[[Xy; 2]]) -> f64 {
+    let away = |[a, b]: &[Xy; 2]| {
+        let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+        let along = (p[0] - a[0]) * dx + (p[1] - a[1]) * dy;
+        let t = (along / (dx * dx + dy * dy)).clamp(0.0, 1.0);
+        (p[0] - a[0] - t * dx).hypot(p[1] - a[1] - t * dy)
+    };
+    segments.iter().map(away).fold(f64::INFINITY, f64::min)
 }

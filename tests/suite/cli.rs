@@ -142,6 +142,38 @@ fn a_job_file_does_the_same_as_flags_and_unknown_keys_are_refused() {
 }
 
 #[test]
+fn rules_by_kind_are_taken_and_what_they_cannot_mean_is_refused() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    city(at);
+    let job = "input = \"city.geojson\"\noutput = \"out.polder\"\nsize = 20\n[kinds.river]\n";
+    for (rule, says) in [
+        (
+            "tolerence_m = 1",
+            &["tolerence_m", "`tolerance_m`", "`hold_m`"][..],
+        ),
+        ("tolerance_m = -1", &["kinds.river.tolerance_m", "-1"]),
+        ("priority = 1000", &["kinds.river.priority", "100"]),
+        ("small_loops = \"drop\"", &["drop", "`keep`", "`collapse`"]),
+        ("hold = false\nhold_m = 0.1", &["kinds.river", "hold_m"]),
+        ("[kinds.canal]\nhold = true", &["kinds.canal", "river"]),
+    ] {
+        fs::write(at.join("job.toml"), format!("{job}{rule}\n")).unwrap();
+        refused(at, &["build", "job.toml"], 2, says);
+    }
+    let rule = "hold = true\npriority = 3\nsmall_loops = \"keep\"\n";
+    fs::write(at.join("job.toml"), format!("{job}{rule}")).unwrap();
+    let built = polder(at, &["build", "job.toml", "--quiet"]);
+    let error = String::from_utf8_lossy(&built.stderr);
+    assert_eq!(built.status.code(), Some(0), "{error}");
+    let told = polder(at, &["info", "out.polder", "--json"]);
+    let facts: serde_json::Value = serde_json::from_slice(&told.stdout).unwrap();
+    let echo: serde_json::Value = serde_json::from_str(facts["job"].as_str().unwrap()).unwrap();
+    assert_eq!(echo["kinds"]["river"]["hold_m"], 0.05);
+    assert_eq!(echo["kinds"]["river"]["small_loops"], "keep");
+}
+
+#[test]
 fn bad_input_is_refused_with_its_place_and_leaves_nothing() {
     let folder = TempDir::new().unwrap();
     let at = folder.path();

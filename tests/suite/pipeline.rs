@@ -8,6 +8,7 @@ use polder::pipeline::build;
 use polder::pipeline::job::CELL_M;
 use polder::pipeline::job::CORNER_DEG;
 use polder::pipeline::job::Job;
+use polder::pipeline::job::MATCH_SIDES;
 use polder::pipeline::ordered::IN_FLIGHT_PER_WORKER;
 use polder::pipeline::ordered::in_order;
 use polder::synth::City;
@@ -85,12 +86,14 @@ fn bytes_of(
         size_m: 14.0,
         sizes_m: Vec::new(),
         tolerance_m: None,
+        rules: Vec::new(),
         crs: CrsChoice::FromFile,
         cell_m: CELL_M,
         tile_m,
         corner_deg: CORNER_DEG,
         // Small, so that seams are made.
         seam_budget_quads: 1500,
+        match_sides: MATCH_SIDES,
         threads,
         force: false,
         resume: false,

@@ -21,6 +21,7 @@ pub(crate) fn chunk(
     let mut builder = builder_for(bytes, path)?;
     let subdomain: Vec<u32> = patches.iter().map(|p| p.subdomain).collect();
     let method: Vec<u8> = patches.iter().map(|p| p.method as u8).collect();
+    let last_resort: Vec<u32> = patches.iter().map(|p| p.last_resort_quads).collect();
     let boundary_start = offsets(patches.iter().map(|p| p.boundary.len()));
     let interior_start = offsets(patches.iter().map(|p| p.interior.len()));
     let quad_start = offsets(patches.iter().map(|p| p.quads.len()));
@@ -57,6 +58,7 @@ pub(crate) fn chunk(
         interior_xy_m: Some(interior),
         quad_start: Some(builder.create_vector(&quad_start)),
         quads: Some(quads),
+        patch_last_resort_quads: Some(builder.create_vector(&last_resort)),
     };
     let root = chunk_file::Chunk::create(&mut builder, &args);
     chunk_file::finish_chunk_buffer(&mut builder, root);

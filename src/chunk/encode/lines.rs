@@ -87,6 +87,7 @@ pub(crate) fn lines(work: &LineWork, path: &Path) -> Result<Encoded, Error> {
         origin_y_m: work.domain.grid.origin_m[1],
         cell_m: work.domain.grid.cell_m,
         kinds: Some(strings(&mut b, &work.domain.kinds)),
+        kind_tolerance_m: Some(b.create_vector(work.tolerance_by_kind_m)),
         names: Some(strings(&mut b, &names)),
         line_source: Some(b.create_vector(&source)),
         line_role: Some(b.create_vector(&role)),

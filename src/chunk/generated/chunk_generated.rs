@@ -32,6 +32,7 @@ impl<'a> Chunk<'a> {
   pub const VT_INTERIOR_XY_M: ::flatbuffers::VOffsetT = 24;
   pub const VT_QUAD_START: ::flatbuffers::VOffsetT = 26;
   pub const VT_QUADS: ::flatbuffers::VOffsetT = 28;
+  pub const VT_PATCH_LAST_RESORT_QUADS: ::flatbuffers::VOffsetT = 30;
 
   #[inline]
   pub unsafe fn init_from_table(table: ::flatbuffers::Table<'a>) -> Self {
@@ -45,6 +46,7 @@ impl<'a> Chunk<'a> {
     let mut builder = ChunkBuilder::new(_fbb);
     builder.add_origin_y_m(args.origin_y_m);
     builder.add_origin_x_m(args.origin_x_m);
+    if let Some(x) = args.patch_last_resort_quads { builder.add_patch_last_resort_quads(x); }
     if let Some(x) = args.quads { builder.add_quads(x); }
     if let Some(x) = args.quad_start { builder.add_quad_start(x); }
     if let Some(x) = args.interior_xy_m { builder.add_interior_xy_m(x); }
@@ -164,6 +166,14 @@ impl<'a> Chunk<'a> {
     // which contains a valid value in this slot
     unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, u32>>>(Chunk::VT_QUADS, None).unwrap()}
   }
+  /// One a patch: how many of its quads the last resort made; all of them if the patch is its own.
+  #[inline]
+  pub fn patch_last_resort_quads(&self) -> ::flatbuffers::Vector<'a, u32> {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, u32>>>(Chunk::VT_PATCH_LAST_RESORT_QUADS, None).unwrap()}
+  }
 }
 
 impl ::flatbuffers::Verifiable for Chunk<'_> {
@@ -185,6 +195,7 @@ impl ::flatbuffers::Verifiable for Chunk<'_> {
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, f64>>>("interior_xy_m", Self::VT_INTERIOR_XY_M, true)?
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u32>>>("quad_start", Self::VT_QUAD_START, true)?
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u32>>>("quads", Self::VT_QUADS, true)?
+     .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u32>>>("patch_last_resort_quads", Self::VT_PATCH_LAST_RESORT_QUADS, true)?
      .finish();
     Ok(())
   }
@@ -203,6 +214,7 @@ pub struct ChunkArgs<'a> {
     pub interior_xy_m: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, f64>>>,
     pub quad_start: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u32>>>,
     pub quads: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u32>>>,
+    pub patch_last_resort_quads: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u32>>>,
 }
 impl<'a> Default for ChunkArgs<'a> {
   #[inline]
@@ -221,6 +233,7 @@ impl<'a> Default for ChunkArgs<'a> {
       interior_xy_m: None, // required field
       quad_start: None, // required field
       quads: None, // required field
+      patch_last_resort_quads: None, // required field
     }
   }
 }
@@ -283,6 +296,10 @@ impl<'a: 'b, 'b, A: ::flatbuffers::Allocator + 'a> ChunkBuilder<'a, 'b, A> {
     self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Chunk::VT_QUADS, quads);
   }
   #[inline]
+  pub fn add_patch_last_resort_quads(&mut self, patch_last_resort_quads: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , u32>>) {
+    self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Chunk::VT_PATCH_LAST_RESORT_QUADS, patch_last_resort_quads);
+  }
+  #[inline]
   pub fn new(_fbb: &'b mut ::flatbuffers::FlatBufferBuilder<'a, A>) -> ChunkBuilder<'a, 'b, A> {
     let start = _fbb.start_table();
     ChunkBuilder {
@@ -301,6 +318,7 @@ impl<'a: 'b, 'b, A: ::flatbuffers::Allocator + 'a> ChunkBuilder<'a, 'b, A> {
     self.fbb_.required(o, Chunk::VT_INTERIOR_XY_M,"interior_xy_m");
     self.fbb_.required(o, Chunk::VT_QUAD_START,"quad_start");
     self.fbb_.required(o, Chunk::VT_QUADS,"quads");
+    self.fbb_.required(o, Chunk::VT_PATCH_LAST_RESORT_QUADS,"patch_last_resort_quads");
     ::flatbuffers::WIPOffset::new(o.value())
   }
 }
@@ -321,6 +339,7 @@ impl ::core::fmt::Debug for Chunk<'_> {
       ds.field("interior_xy_m", &self.interior_xy_m());
       ds.field("quad_start", &self.quad_start());
       ds.field("quads", &self.quads());
+      ds.field("patch_last_resort_quads", &self.patch_last_resort_quads());
       ds.finish()
   }
 }

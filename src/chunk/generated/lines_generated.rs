@@ -195,29 +195,30 @@ impl<'a> Lines<'a> {
   pub const VT_ORIGIN_Y_M: ::flatbuffers::VOffsetT = 8;
   pub const VT_CELL_M: ::flatbuffers::VOffsetT = 10;
   pub const VT_KINDS: ::flatbuffers::VOffsetT = 12;
-  pub const VT_NAMES: ::flatbuffers::VOffsetT = 14;
-  pub const VT_LINE_SOURCE: ::flatbuffers::VOffsetT = 16;
-  pub const VT_LINE_ROLE: ::flatbuffers::VOffsetT = 18;
-  pub const VT_LINE_KIND: ::flatbuffers::VOffsetT = 20;
-  pub const VT_LINE_NAME: ::flatbuffers::VOffsetT = 22;
-  pub const VT_POINT_START: ::flatbuffers::VOffsetT = 24;
-  pub const VT_POINTS: ::flatbuffers::VOffsetT = 26;
-  pub const VT_DROPPED_LINE: ::flatbuffers::VOffsetT = 28;
-  pub const VT_DROPPED_REASON: ::flatbuffers::VOffsetT = 30;
-  pub const VT_DROPPED_FROM_M: ::flatbuffers::VOffsetT = 32;
-  pub const VT_DROPPED_TO_M: ::flatbuffers::VOffsetT = 34;
-  pub const VT_WORDS: ::flatbuffers::VOffsetT = 36;
-  pub const VT_CHANGE_WORD: ::flatbuffers::VOffsetT = 38;
-  pub const VT_CHANGE_AT: ::flatbuffers::VOffsetT = 40;
-  pub const VT_CHANGE_MOVED_M: ::flatbuffers::VOffsetT = 42;
-  pub const VT_TALLY_WORD: ::flatbuffers::VOffsetT = 44;
-  pub const VT_TALLY_COUNT: ::flatbuffers::VOffsetT = 46;
-  pub const VT_TALLY_MOVED_MAX_M: ::flatbuffers::VOffsetT = 48;
-  pub const VT_DISPLACEMENT_MAX_M: ::flatbuffers::VOffsetT = 50;
-  pub const VT_DISPLACEMENT_P99_M: ::flatbuffers::VOffsetT = 52;
-  pub const VT_LENGTH_M: ::flatbuffers::VOffsetT = 54;
-  pub const VT_LENGTH_DROPPED_M: ::flatbuffers::VOffsetT = 56;
-  pub const VT_FINDINGS: ::flatbuffers::VOffsetT = 58;
+  pub const VT_KIND_TOLERANCE_M: ::flatbuffers::VOffsetT = 14;
+  pub const VT_NAMES: ::flatbuffers::VOffsetT = 16;
+  pub const VT_LINE_SOURCE: ::flatbuffers::VOffsetT = 18;
+  pub const VT_LINE_ROLE: ::flatbuffers::VOffsetT = 20;
+  pub const VT_LINE_KIND: ::flatbuffers::VOffsetT = 22;
+  pub const VT_LINE_NAME: ::flatbuffers::VOffsetT = 24;
+  pub const VT_POINT_START: ::flatbuffers::VOffsetT = 26;
+  pub const VT_POINTS: ::flatbuffers::VOffsetT = 28;
+  pub const VT_DROPPED_LINE: ::flatbuffers::VOffsetT = 30;
+  pub const VT_DROPPED_REASON: ::flatbuffers::VOffsetT = 32;
+  pub const VT_DROPPED_FROM_M: ::flatbuffers::VOffsetT = 34;
+  pub const VT_DROPPED_TO_M: ::flatbuffers::VOffsetT = 36;
+  pub const VT_WORDS: ::flatbuffers::VOffsetT = 38;
+  pub const VT_CHANGE_WORD: ::flatbuffers::VOffsetT = 40;
+  pub const VT_CHANGE_AT: ::flatbuffers::VOffsetT = 42;
+  pub const VT_CHANGE_MOVED_M: ::flatbuffers::VOffsetT = 44;
+  pub const VT_TALLY_WORD: ::flatbuffers::VOffsetT = 46;
+  pub const VT_TALLY_COUNT: ::flatbuffers::VOffsetT = 48;
+  pub const VT_TALLY_MOVED_MAX_M: ::flatbuffers::VOffsetT = 50;
+  pub const VT_DISPLACEMENT_MAX_M: ::flatbuffers::VOffsetT = 52;
+  pub const VT_DISPLACEMENT_P99_M: ::flatbuffers::VOffsetT = 54;
+  pub const VT_LENGTH_M: ::flatbuffers::VOffsetT = 56;
+  pub const VT_LENGTH_DROPPED_M: ::flatbuffers::VOffsetT = 58;
+  pub const VT_FINDINGS: ::flatbuffers::VOffsetT = 60;
 
   #[inline]
   pub unsafe fn init_from_table(table: ::flatbuffers::Table<'a>) -> Self {
@@ -255,6 +256,7 @@ impl<'a> Lines<'a> {
     if let Some(x) = args.line_role { builder.add_line_role(x); }
     if let Some(x) = args.line_source { builder.add_line_source(x); }
     if let Some(x) = args.names { builder.add_names(x); }
+    if let Some(x) = args.kind_tolerance_m { builder.add_kind_tolerance_m(x); }
     if let Some(x) = args.kinds { builder.add_kinds(x); }
     builder.add_schema(args.schema);
     builder.finish()
@@ -298,6 +300,14 @@ impl<'a> Lines<'a> {
     // Created from valid Table for this object
     // which contains a valid value in this slot
     unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, ::flatbuffers::ForwardsUOffset<&'a str>>>>(Lines::VT_KINDS, None).unwrap()}
+  }
+  /// One a kind: how far its lines may lie from the mesh edges that represent them, metres.
+  #[inline]
+  pub fn kind_tolerance_m(&self) -> ::flatbuffers::Vector<'a, f64> {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, f64>>>(Lines::VT_KIND_TOLERANCE_M, None).unwrap()}
   }
   /// Distinct names of lines, sorted.
   #[inline]
@@ -494,6 +504,7 @@ impl ::flatbuffers::Verifiable for Lines<'_> {
      .visit_field::<f64>("origin_y_m", Self::VT_ORIGIN_Y_M, false)?
      .visit_field::<f64>("cell_m", Self::VT_CELL_M, false)?
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, ::flatbuffers::ForwardsUOffset<&'_ str>>>>("kinds", Self::VT_KINDS, true)?
+     .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, f64>>>("kind_tolerance_m", Self::VT_KIND_TOLERANCE_M, true)?
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, ::flatbuffers::ForwardsUOffset<&'_ str>>>>("names", Self::VT_NAMES, true)?
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u32>>>("line_source", Self::VT_LINE_SOURCE, true)?
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u8>>>("line_role", Self::VT_LINE_ROLE, true)?
@@ -527,6 +538,7 @@ pub struct LinesArgs<'a> {
     pub origin_y_m: f64,
     pub cell_m: f64,
     pub kinds: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, ::flatbuffers::ForwardsUOffset<&'a str>>>>,
+    pub kind_tolerance_m: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, f64>>>,
     pub names: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, ::flatbuffers::ForwardsUOffset<&'a str>>>>,
     pub line_source: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u32>>>,
     pub line_role: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u8>>>,
@@ -560,6 +572,7 @@ impl<'a> Default for LinesArgs<'a> {
       origin_y_m: 0.0,
       cell_m: 0.0,
       kinds: None, // required field
+      kind_tolerance_m: None, // required field
       names: None, // required field
       line_source: None, // required field
       line_role: None, // required field
@@ -611,6 +624,10 @@ impl<'a: 'b, 'b, A: ::flatbuffers::Allocator + 'a> LinesBuilder<'a, 'b, A> {
   #[inline]
   pub fn add_kinds(&mut self, kinds: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , ::flatbuffers::ForwardsUOffset<&'b  str>>>) {
     self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Lines::VT_KINDS, kinds);
+  }
+  #[inline]
+  pub fn add_kind_tolerance_m(&mut self, kind_tolerance_m: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , f64>>) {
+    self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Lines::VT_KIND_TOLERANCE_M, kind_tolerance_m);
   }
   #[inline]
   pub fn add_names(&mut self, names: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , ::flatbuffers::ForwardsUOffset<&'b  str>>>) {
@@ -716,6 +733,7 @@ impl<'a: 'b, 'b, A: ::flatbuffers::Allocator + 'a> LinesBuilder<'a, 'b, A> {
   pub fn finish(self) -> ::flatbuffers::WIPOffset<Lines<'a>> {
     let o = self.fbb_.end_table(self.start_);
     self.fbb_.required(o, Lines::VT_KINDS,"kinds");
+    self.fbb_.required(o, Lines::VT_KIND_TOLERANCE_M,"kind_tolerance_m");
     self.fbb_.required(o, Lines::VT_NAMES,"names");
     self.fbb_.required(o, Lines::VT_LINE_SOURCE,"line_source");
     self.fbb_.required(o, Lines::VT_LINE_ROLE,"line_role");
@@ -747,6 +765,7 @@ impl ::core::fmt::Debug for Lines<'_> {
       ds.field("origin_y_m", &self.origin_y_m());
       ds.field("cell_m", &self.cell_m());
       ds.field("kinds", &self.kinds());
+      ds.field("kind_tolerance_m", &self.kind_tolerance_m());
       ds.field("names", &self.names());
       ds.field("line_source", &self.line_source());
       ds.field("line_role", &self.line_role());

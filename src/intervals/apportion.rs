@@ -40,10 +40,21 @@ pub fn apportion(edges: &[EdgeWish], count: u32) -> Vec<u32> {
     shares
 }
 
-/// What `share` intervals cost on an edge: their relative deviation, as of a curve's count.
+/// What `share` intervals cost on an edge: the square of how many times too short or too long they
+/// are. To halve an edge that is short already costs far more than to halve a long one.
 fn cost(edge: &EdgeWish, share: u32) -> f64 {
     let share = f64::from(share);
-    (share / edge.goal).max(edge.goal / share)
+    (share / edge.goal).max(edge.goal / share).powi(2)
+}
+
+/// What the cheapest edge asks for one more interval when the curve has `count`; `None` if no edge
+/// may have one more.
+pub fn next_cost(edges: &[EdgeWish], count: u32) -> Option<f64> {
+    let shares = apportion(edges, count);
+    (edges.iter().zip(shares))
+        .filter(|&(edge, share)| share < edge.upper)
+        .map(|(edge, share)| cost(edge, share + 1) - cost(edge, share))
+        .min_by(f64::total_cmp)
 }
 
 /// One more interval on an edge, ordered by what it costs, then by the edge.
