@@ -52,6 +52,7 @@ fn run(folder: &Path, lines: usize, size_m: f64, threads: usize) {
         size_m,
         sizes_m: Vec::new(),
         tolerance_m: None,
+        min_edge_m: None,
         rules: Vec::new(),
         crs: CrsChoice::FromFile,
         cell_m: CELL_M,

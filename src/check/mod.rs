@@ -20,8 +20,10 @@
 //! 10. `lines`: the mesh edges of each constraint line form chains in the digitised direction that
 //!     follow it from end to end within the tolerance of its kind both ways, dropped stretches
 //!     aside.
-//! 11. `bounds`: each curve's count lies between its bounds.
-//! 12. `certificate`: the cost of the counts is as claimed and not below the bound, which is
+//! 11. `edges`: no edge of a cell is shorter than the least length of its place (that of its lines;
+//!     inside a patch the least of its walks), but for those whose middle is that of a finding.
+//! 12. `bounds`: each curve's count lies between its bounds.
+//! 13. `certificate`: the cost of the counts is as claimed and not below the bound, which is
 //!     computed again from the duals.
 //!
 //! # Needs
@@ -51,6 +53,7 @@ mod outline;
 mod parity;
 mod rings;
 mod segments;
+mod shortest;
 mod walks;
 
 use crate::check::quality::Quality;
@@ -87,6 +90,7 @@ pub fn check(mesh: &Mesh, options: &Options) -> Verdict {
         cells,
         conforming,
         quality,
+        shortest,
         ..
     } = scan;
     let outline = outline::check(mesh, area_m2, files.holds(), options.slack_m);
@@ -97,6 +101,7 @@ pub fn check(mesh: &Mesh, options: &Options) -> Verdict {
     promises.extend(conforming.promises());
     promises.push(outline);
     promises.push(following::check(mesh, options.slack_m));
+    promises.push(shortest.promise());
     promises.extend(parity::check(mesh));
     Verdict { promises, quality }
 }
@@ -122,6 +127,7 @@ struct Scan<'a> {
     cells: cells::Cells,
     conforming: conforming::Conforming<'a>,
     quality: quality::Measuring<'a>,
+    shortest: shortest::Shortest,
     /// Positions of the nodes of the patch at hand, kept for its allocation.
     places: Vec<Xy>,
 }
@@ -134,6 +140,7 @@ impl<'a> Scan<'a> {
             cells: cells::Cells::new(origin_m),
             conforming: conforming::Conforming::new(mesh.frame(), origin_m),
             quality: quality::Measuring::new(mesh.frame(), origin_m),
+            shortest: shortest::Shortest::new(mesh),
             places: Vec::new(),
         }
     }
@@ -146,5 +153,6 @@ impl<'a> Scan<'a> {
         }
         self.conforming.add(patch, &self.places);
         self.quality.add(patch, &self.places);
+        self.shortest.add(patch, &self.places);
     }
 }

@@ -123,6 +123,7 @@ pub(crate) fn lines(view: &LinesView) -> Shape {
     rows_of_words("line_kind", view.kind_row, view.kinds.len())?;
     let kinds = view.kinds.len();
     length("kind_tolerance_m", view.kind_tolerance_m.len(), kinds)?;
+    length("kind_min_edge_m", view.kind_min_edge_m.len(), kinds)?;
     let dropped = view.dropped_line.len();
     below("dropped_line", view.dropped_line, lines)?;
     length("dropped_reason", view.dropped_reason.len(), dropped)?;

@@ -237,12 +237,20 @@ pub struct LinesView<'a> {
     pub displacement_max_m: f64,
     /// 99 % quantile of the same by length, metres.
     pub displacement_p99_m: f64,
+    /// Both as shares of the wished size along each line.
+    pub displacement_max_over_size: f64,
+    /// 99 % quantile of the same.
+    pub displacement_p99_over_size: f64,
     /// Length of all lines inside the domain, metres.
     pub length_m: f64,
     /// Length dropped inside the domain, metres.
     pub length_dropped_m: f64,
     /// Kind -> how far its lines may lie from their mesh edges, metres.
     pub kind_tolerance_m: &'a [f64],
+    /// Kind -> mesh edges along its lines that are shorter than this are findings, metres.
+    pub kind_min_edge_m: &'a [f64],
+    /// The same away from lines.
+    pub min_edge_m: f64,
     pub(crate) kinds: Strings<'a>,
     pub(crate) names: Strings<'a>,
     pub(crate) words: Strings<'a>,
@@ -303,6 +311,24 @@ impl<'a> LinesView<'a> {
     /// How far `line` may lie from the mesh edges that represent it, metres.
     pub fn tolerance_m(&self, line: usize) -> f64 {
         self.kind_tolerance_m[self.kind_row[line] as usize]
+    }
+
+    /// What mesh edges that carry these lines should at least measure, metres.
+    pub fn min_edge_along_m(&self, lines: &[u32]) -> f64 {
+        let kinds = lines.iter().map(|&line| self.kind_row[line as usize]);
+        let limits = kinds.map(|kind| self.kind_min_edge_m[usize::from(kind)]);
+        limits.reduce(f64::min).unwrap_or(self.min_edge_m)
+    }
+
+    /// A line in words: kind, name, input feature.
+    pub fn words_for(&self, line: usize) -> String {
+        let said = [self.kind(line), self.name(line)];
+        let said: Vec<&str> = said.into_iter().filter(|it| !it.is_empty()).collect();
+        match self.source[line] {
+            u32::MAX => "the box around all lines".to_string(),
+            source if said.is_empty() => format!("feature {source}"),
+            source => format!("{} (feature {source})", said.join(" ")),
+        }
     }
 
     /// Name of the kind of `line`, or empty.

@@ -13,6 +13,7 @@ use crate::chunk::record::PatchRecord;
 use crate::chunk::record::widened;
 use crate::chunk::store;
 use crate::chunk::views::ChunkView;
+use crate::chunk::views::FrameView;
 use crate::geometry::grid::Grid;
 use std::fs;
 use std::path::Path;
@@ -125,6 +126,21 @@ impl Writer {
             patches: patches.iter().map(entry_of).collect(),
             box_m: (patches.iter()).fold(NO_BOX, |b, patch| widened(b, &patch.interior)),
         })
+    }
+
+    /// Shows what was written to `visit`, chunk by chunk, as a reader will see it.
+    pub fn review(
+        &self,
+        chunks: usize,
+        mut visit: impl FnMut(&FrameView, &ChunkView),
+    ) -> Result<(), Error> {
+        let mapped = open::map(&self.partial.join("frame"))?;
+        let frame = open::frame(&mapped)?;
+        for number in 0..chunks {
+            let file = open::map(&self.partial.join(chunk_name(number as u32)))?;
+            visit(&frame, &open::chunk(&file)?);
+        }
+        Ok(())
     }
 
     /// The receipt of a chunk that an earlier run wrote, after verifying the file.

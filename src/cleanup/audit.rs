@@ -198,10 +198,12 @@ fn is_a_node(graph: &Graph, line: LineId, from_m: f64, to_m: f64) -> bool {
 
 /// Largest and 99 % displacement by length, of every segment of every piece from its edge.
 fn displacements(graph: &Graph) -> Tally {
-    let mut samples: Vec<(f64, f64)> = Vec::new();
+    // distance, its share of the size, length
+    let mut samples: Vec<[f64; 3]> = Vec::new();
     for edge in graph.edges.iter().filter(|edge| edge.alive) {
         let [a, b] = edge.ends.map(|node| graph.metres(node));
         for piece in &edge.pieces {
+            let size_m = graph.measure.size_m[piece.line as usize];
             let (low, high) = (piece.from_m.min(piece.to_m), piece.from_m.max(piece.to_m));
             let mut way: Vec<Xy> = vec![graph.measure.point(piece.line, low)];
             graph.measure.visit_vertices(piece, |p| way.push(p));
@@ -213,25 +215,37 @@ fn displacements(graph: &Graph) -> Tally {
                 for k in 0..4 {
                     let t = (f64::from(k) + 0.5) / 4.0;
                     let p = [u[0] + t * (v[0] - u[0]), u[1] + t * (v[1] - u[1])];
-                    samples.push((to_segment(p, a, b).0, length / 4.0));
+                    let away = to_segment(p, a, b).0;
+                    samples.push([away, away / size_m, length / 4.0]);
                 }
-                samples.push((to_segment(u, a, b).0, 0.0));
-                samples.push((to_segment(v, a, b).0, 0.0));
+                for p in [u, v] {
+                    let away = to_segment(p, a, b).0;
+                    samples.push([away, away / size_m, 0.0]);
+                }
             }
         }
     }
-    samples.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    let total: f64 = samples.iter().map(|it| it.1).sum();
-    let mut below = 0.0;
-    let p99 = samples.iter().find(|it| {
-        below += it.1;
-        below >= 0.99 * total
-    });
+    let [displacement_max_m, displacement_p99_m] = extremes(&mut samples, 0);
+    let [displacement_max_over_size, displacement_p99_over_size] = extremes(&mut samples, 1);
     Tally {
-        displacement_max_m: samples.last().map_or(0.0, |it| it.0),
-        displacement_p99_m: p99.map_or(0.0, |it| it.0),
+        displacement_max_m,
+        displacement_p99_m,
+        displacement_max_over_size,
+        displacement_p99_over_size,
         ..Tally::default()
     }
+}
+
+/// Largest value and 99 % quantile by length of one column of the samples.
+fn extremes(samples: &mut [[f64; 3]], column: usize) -> [f64; 2] {
+    samples.sort_by(|a, b| a[column].total_cmp(&b[column]).then(a[2].total_cmp(&b[2])));
+    let total: f64 = samples.iter().map(|it| it[2]).sum();
+    let mut below = 0.0;
+    let p99 = samples.iter().find(|it| {
+        below += it[2];
+        below >= 0.99 * total
+    });
+    [samples.last(), p99].map(|it| it.map_or(0.0, |it| it[column]))
 }
 
 fn rows(graph: &Graph) -> Vec<(&'static str, u64, f64)> {

@@ -53,6 +53,10 @@ pub struct Tally {
     pub displacement_max_m: f64,
     /// 99 % quantile of the same, by length.
     pub displacement_p99_m: f64,
+    /// The largest as a share of the wished size along each line.
+    pub displacement_max_over_size: f64,
+    /// 99 % quantile of that share, by length.
+    pub displacement_p99_over_size: f64,
     /// Length of all lines inside the domain, metres.
     pub length_m: f64,
     /// Length dropped inside the domain ([`Reason::Clipped`] and [`Reason::Shrunk`] not counted),

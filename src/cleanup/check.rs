@@ -4,7 +4,6 @@ use std::fmt;
 
 use crate::cleanup::Cleaned;
 use crate::cleanup::Options;
-use crate::cleanup::SHORTEST;
 use crate::cleanup::audit::Stretch;
 use crate::cleanup::audit::carriers;
 use crate::cleanup::audit::stretches;
@@ -139,7 +138,7 @@ fn check_lengths(graph: &Graph, cleaned: &Cleaned) -> Result<(), Defect> {
     let mut short = graph.live();
     short.retain(|&edge| {
         let (a, b) = graph.ends_m(edge);
-        distance(a, b) < SHORTEST * graph.edges[edge as usize].size_m
+        distance(a, b) < graph.measure.min_edge * graph.edges[edge as usize].size_m
     });
     match short.first() {
         Some(&edge) if short.len() > named => Err(Defect::ShortEdge(edge)),

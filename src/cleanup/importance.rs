@@ -16,14 +16,12 @@ pub(super) struct Importance {
     pub(super) at: Point,
 }
 
-/// A turn by more than this is a corner.
-const CORNER_DEG: f64 = 30.0;
-
 impl Importance {
     pub(super) fn of(graph: &Graph, node: u32) -> Importance {
         let star = &graph.star[node as usize];
         let rank = star.iter().map(|&e| graph.edges[e as usize].rank);
-        let turns = turn_deg(graph, node, |_| true).is_some_and(|turn| turn > CORNER_DEG);
+        let turns =
+            turn_deg(graph, node, |_| true).is_some_and(|turn| turn > graph.measure.corner_deg);
         Importance {
             is_rim_corner: is_rim_corner(graph, node),
             rank: rank.fold(0.0, f64::max),
@@ -44,7 +42,7 @@ pub(super) fn is_rim_corner(graph: &Graph, node: u32) -> bool {
         return false;
     }
     let turn = turn_deg(graph, node, |e| graph.edges[e as usize].is_rim());
-    turn.is_none_or(|turn| turn > CORNER_DEG)
+    turn.is_none_or(|turn| turn > graph.measure.corner_deg)
 }
 
 /// By how much the way over `node` along the edges that `counts` picks turns, degrees; `None`

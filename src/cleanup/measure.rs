@@ -28,6 +28,10 @@ pub(super) struct Measure<'a> {
     pub(super) rank: Vec<f64>,
     /// Lines that stay loops however small they are.
     keeps_loops: Vec<bool>,
+    /// Least length of an edge, in wished sizes.
+    pub(super) min_edge: f64,
+    /// A line turns at a corner if its direction changes by more than this, degrees.
+    pub(super) corner_deg: f64,
     /// Wished edge length where no line says otherwise.
     pub(super) default_m: f64,
 }
@@ -49,6 +53,8 @@ impl<'a> Measure<'a> {
             size_m: Vec::with_capacity(domain.lines.len()),
             rank: Vec::with_capacity(domain.lines.len()),
             keeps_loops: Vec::with_capacity(domain.lines.len()),
+            min_edge: options.min_edge,
+            corner_deg: options.corner_deg,
             default_m: sizes.default_m,
         };
         for (id, line) in domain.lines.iter().enumerate() {

@@ -12,8 +12,11 @@
 //! 3. Tags survive all merges: a merged edge carries the stretches of all its lines.
 //! 4. Holes and boundaries may move within the tolerance, but none goes; corners of the outline
 //!    stay unless an edge between two of them is too short.
-//! 5. Every edge shorter than [`SHORTEST`] h that is left is a finding with its place, and so is
+//! 5. Every edge shorter than [`Options::min_edge`] h that is left is a finding with its place, its
+//!    lines and its length, and so is every gap between a node and an edge that is narrower, and
 //!    every angle below [`SHARP_DEG`] degrees.
+//!    Junctions, and corners that turn by more than [`Options::corner_deg`] between edges of at least
+//!    that length, remain nodes unless they are merged with what is near.
 //! 6. Same input, same bits. A tolerance of zero changes nothing.
 //! 7. What a kind of line asks for ([`rules`]) holds in every step: its own tolerance, no move
 //!    beyond what it is held to, closed lines of it that keep an inside. Where two lines merge, the
@@ -119,6 +122,11 @@ pub struct Options {
     pub tolerance: Tolerance,
     /// By kind of line; as long as [`Domain::kinds`].
     pub by_kind: Vec<Rule>,
+    /// Least length of an edge, as a share of the wished size along its lines; [`SHORTEST`] is
+    /// usual.
+    pub min_edge: f64,
+    /// A line turns at a corner if its direction changes by more than this, degrees.
+    pub corner_deg: f64,
 }
 
 /// The line work, ready to be meshed.
@@ -136,7 +144,7 @@ pub struct Cleaned {
     pub findings: Vec<Finding>,
 }
 
-/// Edges shorter than this share of the mesh size are findings.
+/// Edges shorter than this share of the mesh size are findings, unless the job says otherwise.
 pub const SHORTEST: f64 = 0.25;
 /// Angles below this are findings, degrees.
 pub const SHARP_DEG: f64 = 20.0;
@@ -263,8 +271,13 @@ const ROUNDS_MAX: usize = 6;
 /// All steps, in order.
 fn make_room(graph: &mut Graph) {
     simplify::simplify(graph, &FINE, &graph.nodes());
+    let least = graph.measure.min_edge;
     for pass in [&GENTLE, &FIRM] {
-        separate::separate(graph, &pass.narrow, &graph.nodes());
+        let narrow = Narrow {
+            edge: pass.narrow.edge.max(least),
+            ..pass.narrow
+        };
+        separate::separate(graph, &narrow, &graph.nodes());
         let mut nodes = graph.nodes();
         for _ in 0..ROUNDS_MAX {
             simplify::simplify(graph, &SMOOTH, &nodes);
@@ -275,14 +288,24 @@ fn make_room(graph: &mut Graph) {
             if nodes.is_empty() {
                 break;
             }
-            separate::separate(graph, &pass.narrow, &nodes);
+            separate::separate(graph, &narrow, &nodes);
             nodes = graph.nodes_since(mark);
         }
     }
+    let (stuck, wanted) = (
+        Narrow {
+            edge: STUCK.edge.max(1.1 * least),
+            ..STUCK
+        },
+        Wanted {
+            edge: WANTED.edge.max(1.2 * least),
+            ..WANTED
+        },
+    );
     let mark = graph.touched.len();
     wedges::divide_wedges(graph, &GENTLE.zip, &graph.nodes());
-    relax::relax(graph, &WANTED, &graph.nodes());
-    separate::separate(graph, &STUCK, &graph.nodes());
+    relax::relax(graph, &wanted, &graph.nodes());
+    separate::separate(graph, &stuck, &graph.nodes());
     simplify::simplify(graph, &SMOOTH, &graph.nodes_since(mark));
-    relax::relax(graph, &WANTED, &graph.nodes_since(mark));
+    relax::relax(graph, &wanted, &graph.nodes_since(mark));
 }

@@ -51,4 +51,9 @@ impl Options {
         let asked_m = rule.tolerance_m.unwrap_or(usual_m);
         rule.hold_m.map_or(asked_m, |hold_m| hold_m.min(asked_m))
     }
+
+    /// Least length of an edge along lines of kind `kind`, metres.
+    pub fn min_edge_m(&self, sizes: &SizeWish, kind: usize) -> f64 {
+        self.min_edge * sizes.by_kind_m[kind]
+    }
 }

@@ -5,6 +5,7 @@ use std::collections::BinaryHeap;
 
 use crate::cleanup::graph::Graph;
 use crate::cleanup::importance::turn_deg;
+use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;
 use crate::cleanup::wedges::angle_deg;
 use crate::geometry::point::Point;
@@ -14,7 +15,8 @@ use crate::geometry::point::Point;
 pub(super) struct Smooth {
     /// How far lines may be from the edge that replaces two.
     pub(super) deviation: f64,
-    /// The same where the way turns by more than [`CORNER_DEG`].
+    /// The same at corners, of which only those go that are nearer than the least edge to the node
+    /// before or after: wiggles.
     pub(super) at_corners: f64,
     /// The same along the outline.
     pub(super) on_rim: f64,
@@ -25,8 +27,6 @@ pub(super) struct Smooth {
     /// May the end of one line and the start of the next lose their node?
     pub(super) over_ends: bool,
 }
-
-const CORNER_DEG: f64 = 30.0;
 
 /// Removes all nodes of degree two that `smooth` allows, of these and what they lead to.
 pub(super) fn simplify(graph: &mut Graph, smooth: &Smooth, nodes: &[u32]) {
@@ -88,7 +88,10 @@ fn deviation(graph: &Graph, smooth: &Smooth, node: u32) -> Option<f64> {
     let size = graph.size_at_m(node);
     let (p, q) = (graph.metres(a), graph.metres(b));
     let own = to_segment(graph.metres(node), p, q).0;
-    let turns = turn_deg(graph, node, |_| true).is_some_and(|turn| turn > CORNER_DEG);
+    let turns = turn_deg(graph, node, |_| true).is_some_and(|turn| turn > graph.measure.corner_deg);
+    if turns && star.iter().all(|&edge| is_long(graph, edge)) {
+        return None;
+    }
     let is_rim = star.iter().any(|&edge| graph.edges[edge as usize].is_rim());
     let limit = size
         * match (is_rim, turns) {
@@ -107,6 +110,12 @@ fn deviation(graph: &Graph, smooth: &Smooth, node: u32) -> Option<f64> {
         }
     }
     Some(worst / size)
+}
+
+/// True if an edge may stay as it is.
+fn is_long(graph: &Graph, edge: u32) -> bool {
+    let (a, b) = graph.ends_m(edge);
+    distance(a, b) >= graph.measure.min_edge * graph.edges[edge as usize].size_m
 }
 
 /// False if the new edge would come too near to a node, nearer than the old ones were.

@@ -114,6 +114,14 @@ pub struct BuildArgs {
     /// How far clean-up may move a line, metres; 0 switches clean-up off. Default: half the size.
     #[arg(long)]
     pub tolerance: Option<f64>,
+    /// Mesh edges shorter than this are avoided, and listed where they cannot be, metres. Default: a
+    /// quarter of the size.
+    #[arg(long)]
+    pub min_edge: Option<f64>,
+    /// A line turns at a corner, which remains a node, if its direction changes by more than this,
+    /// degrees. Default: 30.
+    #[arg(long)]
+    pub corner_angle: Option<f64>,
     /// `local` for plane coordinates without a reference system, or an EPSG code that overrides
     /// the file's.
     #[arg(long)]

@@ -29,7 +29,9 @@ struct JobFile {
     kinds: BTreeMap<String, KindTable>,
     tolerance: Option<f64>,
     crs: Option<toml::Value>,
-    corner: Option<f64>,
+    min_edge: Option<f64>,
+    #[serde(alias = "corner")]
+    corner_angle: Option<f64>,
     cell: Option<f64>,
     tile: Option<f64>,
     seam_budget: Option<u32>,
@@ -129,11 +131,12 @@ pub fn job(args: &BuildArgs) -> Result<Job, String> {
         size_m,
         sizes_m: file.sizes.into_iter().collect(),
         tolerance_m: args.tolerance.or(file.tolerance),
+        min_edge_m: args.min_edge.or(file.min_edge),
         rules,
         crs,
         cell_m: file.cell.unwrap_or(CELL_M),
         tile_m: args.tile.or(file.tile),
-        corner_deg: file.corner.unwrap_or(CORNER_DEG),
+        corner_deg: (args.corner_angle.or(file.corner_angle)).unwrap_or(CORNER_DEG),
         seam_budget_quads: args
             .seam_budget
             .or(file.seam_budget)
@@ -192,6 +195,12 @@ fn validate(job: &Job) -> Result<(), String> {
     {
         return Err("tolerance: it must be zero or a positive number of metres".into());
     }
+    let most_m = 0.5 * job.size_m;
+    if (job.min_edge_m).is_some_and(|it| !(it.is_finite() && (0.0..=most_m).contains(&it))) {
+        return Err(format!(
+            "min_edge: it must lie between zero and half the size, {most_m} m"
+        ));
+    }
     if !(job.cell_m.is_finite() && job.cell_m >= 1e-6) {
         return Err(format!(
             "cell is {} m: it must be at least 0.000001",
@@ -203,7 +212,7 @@ fn validate(job: &Job) -> Result<(), String> {
     }
     if !(5.0..=90.0).contains(&job.corner_deg) {
         return Err(format!(
-            "corner is {} degrees: it must lie in 5..90",
+            "the corner angle is {} degrees: it must lie in 5..90",
             job.corner_deg
         ));
     }

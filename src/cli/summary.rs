@@ -67,6 +67,9 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         },
         "displacement_max_m": outcome.displacement_max_m,
         "displacement_p99_m": outcome.displacement_p99_m,
+        "displacement_max_over_size": outcome.displacement_max_over_size,
+        "displacement_p99_over_size": outcome.displacement_p99_over_size,
+        "min_edge_m": job.min_edge() * job.size_m,
         "length_m": outcome.length_m,
         "length_dropped_m": outcome.length_dropped_m,
         "length_shrunk_m": outcome.length_shrunk_m,
@@ -107,7 +110,8 @@ fn first_lines(job: &Job, outcome: &Outcome) -> String {
     format!(
         "{}: {} quads in {} sub-domains, {:.1} s, {:.0} MB\n\
          scaled Jacobian: mean {:.3}, 1 % {:.2}, least {:.3}; irregular nodes {:.1} %\n\
-         lines moved at most {:.2} m (99 % below {:.2} m); dropped {:.1} m of {:.0} m, {:.1} m became nodes\n\
+         lines moved at most {:.2} m (99 % below {:.2} m, {:.3} of the size); \
+         dropped {:.1} m of {:.0} m, {:.1} m became nodes\n\
          parity: gap {:.4} %; {} of {} few-sided sub-domains fit a pattern, gap {:.2} %\n",
         job.output.display(),
         q.scaled_jacobian.count,
@@ -120,6 +124,7 @@ fn first_lines(job: &Job, outcome: &Outcome) -> String {
         100.0 * q.irregular(),
         outcome.displacement_max_m,
         outcome.displacement_p99_m,
+        outcome.displacement_p99_over_size,
         outcome.length_dropped_m,
         outcome.length_m,
         outcome.length_shrunk_m,

@@ -49,6 +49,21 @@ pub struct Domain {
 }
 
 impl Domain {
+    /// A line in words: kind, name, input feature.
+    pub fn words_for(&self, id: LineId) -> String {
+        let line = &self.lines[id as usize];
+        let said = [
+            self.kinds[usize::from(line.kind)].as_str(),
+            line.name.as_str(),
+        ];
+        let said: Vec<&str> = said.into_iter().filter(|it| !it.is_empty()).collect();
+        match line.source {
+            u32::MAX => "the box around all lines".to_string(),
+            source if said.is_empty() => format!("feature {source}"),
+            source => format!("{} (feature {source})", said.join(" ")),
+        }
+    }
+
     /// Cumulative length at each point of line `id`, metres: `[0, .., length]`. Every stage that
     /// turns positions along a line into points uses this one, so that the bits agree.
     pub fn stations_m(&self, id: LineId) -> Vec<f64> {

@@ -174,7 +174,7 @@ pub fn balance(partition: &Partition, goals: &Goals, options: &Options) -> Resul
     balance.proven = optimum == bound;
     balance.odd_subdomains = graph.odd.iter().filter(|odd| **odd).count() as u32;
     balance.cuts = join.cuts;
-    let (structure, counts) = structure::fit_patterns(partition, goals, even, options)?;
+    let (structure, counts) = structure::fit_patterns(partition, goals, base, even, options)?;
     balance.structure = structure;
     Ok(balance.with_counts(goals, counts))
 }

@@ -128,8 +128,8 @@ impl Programme {
         }
         edges.extend(&halves.bridges);
         let graph = Graph::new(odd, edges);
-        match graph.hopeless(partition.subdomains.len() as u32) {
-            Some((subdomain, members)) => Err(Error::Infeasible { subdomain, members }),
+        match graph.hopeless() {
+            Some(nodes) => Err(infeasible(partition, nodes)),
             None => Ok(Programme {
                 rounded,
                 other,
@@ -151,6 +151,18 @@ impl Programme {
         }
         counts
     }
+}
+
+/// The error of a group of nodes that cannot be even.
+fn infeasible(partition: &Partition, nodes: Vec<u32>) -> Error {
+    let mut subdomains = nodes;
+    // Beyond come the second halves of blocks.
+    subdomains.retain(|&node| (node as usize) < partition.subdomains.len());
+    let within = |side: u32| subdomains.binary_search(&side).is_ok();
+    let around = (partition.curves.iter().enumerate())
+        .filter(|(_, curve)| within(curve.left) != within(curve.right));
+    let fixed = around.map(|(id, _)| id as u32).collect();
+    Error::Infeasible { subdomains, fixed }
 }
 
 /// The nodes of the graph: a sub-domain is one, a block of four or six sides two, for its sides of

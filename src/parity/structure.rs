@@ -36,6 +36,9 @@ const LAST_STEP: f64 = 0.02;
 /// Rounds of moves that mend the counts of one round of the climb.
 const MEND_ROUNDS: u32 = 3;
 
+/// Gap below which nothing is left to improve that a mesh would show.
+const GAP_ENOUGH: f64 = 5e-4;
+
 /// What the best multipliers prove.
 struct Proof {
     bound: i64,
@@ -44,10 +47,11 @@ struct Proof {
 }
 
 /// The counts that are best with the wishes of blocks, as far as this finds them, starting from the
-/// counts `even` that are best for parity alone.
+/// counts `even` that are best for parity alone; `free` is what free rounding costs, units.
 pub fn fit_patterns(
     partition: &Partition,
     goals: &Goals,
+    free: i64,
     even: Vec<u32>,
     options: &Options,
 ) -> Result<(Structure, Vec<u32>), Error> {
@@ -79,7 +83,8 @@ pub fn fit_patterns(
             .expect("the first round proves something");
         best = climb.best;
         made.rounds = climb.rounds;
-        if best.total() > proof.bound {
+        let left = (best.total() - proof.bound) as f64;
+        if left > GAP_ENOUGH * (best.total() - free) as f64 {
             made.improved = neighbourhoods::improve(
                 partition,
                 goals,

@@ -1,5 +1,6 @@
 //! A job: everything that a build needs to know, validated.
 
+use crate::cleanup::SHORTEST;
 use crate::cleanup::Tolerance;
 use crate::cleanup::rules::Rule;
 use crate::cleanup::rules::SmallLoops;
@@ -19,6 +20,9 @@ pub struct Job {
     pub sizes_m: Vec<(String, f64)>,
     /// How far clean-up may move a line, metres; half the wished size along it if not given.
     pub tolerance_m: Option<f64>,
+    /// Mesh edges shorter than this are avoided, and are findings where they cannot be, metres;
+    /// where sizes differ by kind, in proportion. A quarter of the size if not given.
+    pub min_edge_m: Option<f64>,
     /// What clean-up may do with lines of a kind.
     pub rules: Vec<(String, Rule)>,
     /// What the coordinates mean.
@@ -69,6 +73,11 @@ impl Job {
         self.tolerance().at_m(self.size_m)
     }
 
+    /// Least length of a mesh edge, as a share of the size.
+    pub fn min_edge(&self) -> f64 {
+        self.min_edge_m.map_or(SHORTEST, |it| it / self.size_m)
+    }
+
     /// The options as one line of JSON, for the output's own record. Threads, tiles and paths are
     /// left out: they do not change the result.
     pub fn echo(&self) -> String {
@@ -83,6 +92,7 @@ impl Job {
             "sizes_m": kinds,
             "tolerance_m": self.tolerance_in_force_m(),
             "tolerance_given": self.tolerance_m.is_some(),
+            "min_edge_m": self.min_edge() * self.size_m,
             "kinds": rules,
             "cell_m": self.cell_m,
             "corner_deg": self.corner_deg,

@@ -27,13 +27,16 @@ pub mod outcome;
 mod patches;
 pub mod plan;
 pub mod progress;
+pub mod refusal;
 mod report;
+mod shortest;
 mod tiles;
 
 pub use report::report;
 
 use crate::check;
 use crate::chunk;
+use crate::chunk::linework::Limits;
 use crate::chunk::linework::LineWork;
 use crate::chunk::reader::Mesh;
 use crate::chunk::record::ChunkReceipt;
@@ -41,6 +44,7 @@ use crate::chunk::writer::Existing;
 use crate::chunk::writer::IndexRecord;
 use crate::chunk::writer::Place;
 use crate::chunk::writer::Writer;
+use crate::domain::finding::Finding;
 use crate::pipeline::error::Error;
 use crate::pipeline::job::Job;
 use crate::pipeline::log::Log;
@@ -49,6 +53,7 @@ use crate::pipeline::outcome::Outcome;
 use crate::pipeline::plan::Plan;
 use crate::pipeline::progress::Listener;
 use crate::pipeline::progress::Stopwatch;
+use crate::pipeline::shortest::Shortest;
 use crate::spill;
 use std::fs;
 use std::path::Path;
@@ -95,7 +100,7 @@ fn build_here(job: &Job, listener: Listener) -> Result<Outcome, Error> {
         let quads: u64 = patches.map(|it| it.quads).sum();
         Ok::<_, Error>((receipts, format!("{quads} quads")))
     })?;
-    finish(job, &plan, &partial, writer, receipts)?;
+    let findings = finish(job, &plan, &partial, writer, receipts)?;
     let verdict = watch.stage("check", 1, |_| -> Result<_, Error> {
         let verdict = check::check(&Mesh::open(&job.output)?, &check::OPTIONS);
         let note = match verdict.holds() {
@@ -104,7 +109,7 @@ fn build_here(job: &Job, listener: Listener) -> Result<Outcome, Error> {
         };
         Ok((verdict, note.to_string()))
     })?;
-    let outcome = Outcome::new(job, &plan, verdict, watch.stages());
+    let outcome = Outcome::new(job, &plan, &findings, verdict, watch.stages());
     let log = Log::new(&outcome.stages, outcome.peak_memory_bytes);
     (log.write(&job.output)).map_err(|it| Error::Write(job.output.clone(), it))?;
     Ok(outcome)
@@ -130,23 +135,33 @@ fn begin(job: &Job, plan: &Plan, partial: &Path) -> Result<Writer, Error> {
     Ok(writer)
 }
 
-/// Writes what comes last and gives the mesh its name.
+/// Writes what comes last and gives the mesh its name. Returns all findings.
 fn finish(
     job: &Job,
     plan: &Plan,
     partial: &Path,
     writer: Writer,
     receipts: Vec<ChunkReceipt>,
-) -> Result<(), Error> {
-    let kinds = 0..plan.domain.kinds.len();
-    let tolerance = |kind| plan.cleaning.tolerance_m(&plan.sizes, kind);
+) -> Result<Vec<Finding>, Error> {
+    let limits = limits(plan);
+    let mut findings = plan.city.findings.clone();
+    let mut shortest: Option<Shortest> = None;
+    writer.review(receipts.len(), |frame, chunk| {
+        let listing = shortest.get_or_insert_with(|| {
+            Shortest::on_lines(&plan.domain, &limits, &plan.city.findings, frame)
+        });
+        for patch in chunk.patches() {
+            listing.add(frame, &patch);
+        }
+    })?;
+    findings.extend(shortest.map_or(Vec::new(), |it| it.findings));
     writer.write_lines(&LineWork {
         domain: &plan.domain,
-        tolerance_by_kind_m: &kinds.map(tolerance).collect::<Vec<f64>>(),
+        limits: &limits,
         dropped: &plan.city.dropped,
         changes: &plan.city.changes,
         tally: &plan.city.tally,
-        findings: &plan.city.findings,
+        findings: &findings,
     })?;
     spill::remove(partial).map_err(|it| Error::Write(partial.to_path_buf(), it))?;
     let record = IndexRecord {
@@ -155,7 +170,21 @@ fn finish(
         job: job.echo(),
         input_digest: plan.domain.digest,
     };
-    Ok(writer.seal(receipts, &record)?)
+    writer.seal(receipts, &record)?;
+    Ok(findings)
+}
+
+/// What the mesh promises, by kind of line.
+fn limits(plan: &Plan) -> Limits {
+    let (cleaning, sizes) = (&plan.cleaning, &plan.sizes);
+    let kinds = 0..plan.domain.kinds.len();
+    Limits {
+        tolerance_by_kind_m: (kinds.clone())
+            .map(|it| cleaning.tolerance_m(sizes, it))
+            .collect(),
+        min_edge_by_kind_m: kinds.map(|it| cleaning.min_edge_m(sizes, it)).collect(),
+        min_edge_m: cleaning.min_edge * sizes.default_m,
+    }
 }
 
 /// Refuses at once what would only fail after the work: an output that exists or cannot be made.

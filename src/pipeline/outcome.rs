@@ -2,6 +2,7 @@
 
 use crate::check::verdict::Verdict;
 use crate::cleanup::changes::Reason;
+use crate::domain::finding::Finding;
 use crate::pipeline::job::Job;
 use crate::pipeline::plan::Plan;
 use crate::pipeline::progress::StageTime;
@@ -22,6 +23,10 @@ pub struct Outcome {
     pub displacement_max_m: f64,
     /// 99 % quantile of the displacement, by length, metres.
     pub displacement_p99_m: f64,
+    /// The largest displacement as a share of the wished size along each line.
+    pub displacement_max_over_size: f64,
+    /// 99 % quantile of that share.
+    pub displacement_p99_over_size: f64,
     /// Length of constraint lines inside the domain, metres.
     pub length_m: f64,
     /// Length dropped of it, metres.
@@ -47,9 +52,15 @@ pub struct Outcome {
 
 impl Outcome {
     /// Gathers the numbers of a finished build.
-    pub(super) fn new(job: &Job, plan: &Plan, verdict: Verdict, stages: Vec<StageTime>) -> Outcome {
+    pub(super) fn new(
+        job: &Job,
+        plan: &Plan,
+        findings: &[Finding],
+        verdict: Verdict,
+        stages: Vec<StageTime>,
+    ) -> Outcome {
         let mut by_kind = BTreeMap::new();
-        for finding in &plan.city.findings {
+        for finding in findings {
             *by_kind.entry(finding.what).or_insert(0) += 1;
         }
         let budget = f64::from(job.seam_budget_quads);
@@ -60,6 +71,8 @@ impl Outcome {
             curves: plan.city.partition.curves.len(),
             displacement_max_m: plan.city.tally.displacement_max_m,
             displacement_p99_m: plan.city.tally.displacement_p99_m,
+            displacement_max_over_size: plan.city.tally.displacement_max_over_size,
+            displacement_p99_over_size: plan.city.tally.displacement_p99_over_size,
             length_m: plan.city.tally.length_m,
             length_dropped_m: plan.city.tally.length_dropped_m,
             length_shrunk_m: (plan.city.dropped.iter())

@@ -24,6 +24,7 @@ use crate::partition::subdomains::Partition;
 use crate::pipeline::error::Error;
 use crate::pipeline::job::Job;
 use crate::pipeline::progress::Stopwatch;
+use crate::pipeline::refusal;
 use crate::pipeline::tiles;
 use crate::seams;
 use crate::spill;
@@ -184,6 +185,8 @@ fn cleaning(job: &Job, domain: &Domain) -> Result<cleanup::Options, Error> {
     Ok(cleanup::Options {
         tolerance: job.tolerance(),
         by_kind,
+        min_edge: job.min_edge(),
+        corner_deg: job.corner_deg,
     })
 }
 
@@ -321,7 +324,8 @@ fn balance(
                 climb_max: 60,
                 neighbourhoods_max: 20,
             },
-        )?;
+        )
+        .map_err(|it| refusal::explain(it, domain, arrangement, partition))?;
         let fit = &balance.structure;
         let note = format!(
             "gap {:.4} %; {} of {} blocks fit a pattern ({} without the wish), gap {:.2} %",

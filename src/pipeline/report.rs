@@ -290,6 +290,14 @@ fn figures(mesh: &Mesh, verdict: &Verdict) -> Table {
             ),
         ),
         row(
+            "the same over the size",
+            format!(
+                "{:.3} ({:.3})",
+                mesh.lines().displacement_max_over_size,
+                mesh.lines().displacement_p99_over_size
+            ),
+        ),
+        row(
             "length dropped, m",
             format!(
                 "{:.1} of {:.0}",

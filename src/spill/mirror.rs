@@ -27,6 +27,9 @@ type CurveRow = (Vec<u32>, Vec<u32>, u32, u32, bool);
 /// Line, from, to.
 type Stretch = (u32, f64, f64);
 
+/// Rows of word, count, displacement; then the figures.
+type TallyRow = (Vec<(String, u64, f64)>, [f64; 6]);
+
 /// Word, sentence, feature, place.
 type FindingRow = (String, String, Option<u32>, Option<[f64; 2]>);
 
@@ -43,7 +46,7 @@ pub(super) struct Plan {
     balance: BalanceRow,
     dropped: Vec<(Stretch, u8)>,
     changes: Vec<(String, i32, i32, f64)>,
-    tally: (Vec<(String, u64, f64)>, [f64; 4]),
+    tally: TallyRow,
     findings: Vec<FindingRow>,
 }
 
@@ -99,7 +102,6 @@ impl Plan {
             )
         };
         let goals = plan.goals.clone();
-        let tally = &plan.tally;
         Plan {
             points: arrangement.points.iter().map(|p| (p.x, p.y)).collect(),
             edges: arrangement.edges.clone(),
@@ -124,19 +126,7 @@ impl Plan {
             changes: (plan.changes.iter())
                 .map(|it| (it.what.into(), it.at.x, it.at.y, it.moved_m))
                 .collect(),
-            tally: (
-                tally
-                    .rows
-                    .iter()
-                    .map(|it| (it.0.into(), it.1, it.2))
-                    .collect(),
-                [
-                    tally.displacement_max_m,
-                    tally.displacement_p99_m,
-                    tally.length_m,
-                    tally.length_dropped_m,
-                ],
-            ),
+            tally: tally_row(&plan.tally),
             findings: (plan.findings.iter())
                 .map(|it| (it.what.into(), it.text.clone(), it.feature, it.at_m))
                 .collect(),
@@ -158,12 +148,6 @@ impl Plan {
                 })
             })
             .collect::<Option<Vec<_>>>()?;
-        let [
-            displacement_max_m,
-            displacement_p99_m,
-            length_m,
-            length_dropped_m,
-        ] = self.tally.1;
         Some(Parked {
             arrangement: Arrangement {
                 points: self
@@ -194,15 +178,7 @@ impl Plan {
                     moved_m,
                 })
                 .collect(),
-            tally: Tally {
-                rows: (self.tally.0.into_iter())
-                    .map(|(what, count, moved_m)| (words.lasting(&what), count, moved_m))
-                    .collect(),
-                displacement_max_m,
-                displacement_p99_m,
-                length_m,
-                length_dropped_m,
-            },
+            tally: tally(self.tally, &mut words),
             findings: (self.findings.into_iter())
                 .map(|(what, text, feature, at_m)| Finding {
                     what: words.lasting(&what),
@@ -212,6 +188,42 @@ impl Plan {
                 })
                 .collect(),
         })
+    }
+}
+
+fn tally_row(tally: &Tally) -> TallyRow {
+    let row = |it: &(&'static str, u64, f64)| (it.0.into(), it.1, it.2);
+    (
+        tally.rows.iter().map(row).collect(),
+        [
+            tally.displacement_max_m,
+            tally.displacement_p99_m,
+            tally.displacement_max_over_size,
+            tally.displacement_p99_over_size,
+            tally.length_m,
+            tally.length_dropped_m,
+        ],
+    )
+}
+
+fn tally((rows, figures): TallyRow, words: &mut Words) -> Tally {
+    let row = |(what, count, moved_m): (String, u64, f64)| (words.lasting(&what), count, moved_m);
+    let [
+        displacement_max_m,
+        displacement_p99_m,
+        displacement_max_over_size,
+        displacement_p99_over_size,
+        length_m,
+        length_dropped_m,
+    ] = figures;
+    Tally {
+        rows: rows.into_iter().map(row).collect(),
+        displacement_max_m,
+        displacement_p99_m,
+        displacement_max_over_size,
+        displacement_p99_over_size,
+        length_m,
+        length_dropped_m,
     }
 }
 

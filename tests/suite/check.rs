@@ -7,6 +7,7 @@ use polder::check::Options;
 use polder::check::check;
 use polder::check::verdict::Verdict;
 use polder::chunk::reader::Mesh;
+use polder::domain::finding::Finding;
 use polder::geometry::point::Point;
 use polder::noding::arrangement::Piece;
 use polder::partition::subdomains::OUTSIDE;
@@ -45,7 +46,7 @@ fn a_whole_mesh_keeps_every_promise() {
                 .expect("it is on the contract page")
         })
         .collect();
-    assert!(order.is_sorted() && names.len() == 12, "{names:?}");
+    assert!(order.is_sorted() && names.len() == 13, "{names:?}");
 }
 
 #[test]
@@ -94,6 +95,30 @@ fn a_flipped_quad_is_found() {
     assert_eq!(
         broken(|it| it.patches[0].quads[1].reverse())[..2],
         ["jacobians", "conforming"]
+    );
+}
+
+#[test]
+fn a_short_edge_is_found_unless_it_is_listed() {
+    assert_eq!(broken(|it| it.min_edge_m = 9.0), [""; 0]);
+    assert_eq!(broken(|it| it.min_edge_m = 10.5), ["edges"]);
+    let mut tiny = tiny();
+    tiny.min_edge_m = 10.5;
+    let first = verdict(&tiny).broken().next().unwrap().clone();
+    // Listed, this place is none any more.
+    tiny.findings.push(Finding {
+        what: "short-interval",
+        text: first.defects[0].text.clone(),
+        feature: None,
+        at_m: first.defects[0].at_m,
+    });
+    let second = verdict(&tiny).broken().next().unwrap().clone();
+    assert!(second.broken < first.broken);
+    assert!(
+        second
+            .defects
+            .iter()
+            .all(|it| it.at_m != first.defects[0].at_m)
     );
 }
 

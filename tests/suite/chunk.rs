@@ -4,6 +4,7 @@ use polder::chunk::chunk_name;
 use polder::chunk::error::Error;
 use polder::chunk::frame::Certificate;
 use polder::chunk::frame::Frame;
+use polder::chunk::linework::Limits;
 use polder::chunk::linework::LineWork;
 use polder::chunk::reader::Mesh;
 use polder::chunk::record::ChunkReceipt;
@@ -51,6 +52,7 @@ pub struct Tiny {
     pub dropped: Vec<Dropped>,
     pub changes: Vec<Change>,
     pub tally: Tally,
+    pub min_edge_m: f64,
     pub findings: Vec<Finding>,
 }
 
@@ -223,9 +225,12 @@ pub fn tiny() -> Tiny {
             rows: vec![("joined-end", 1, 0.25), ("merged-nodes", 0, 0.0)],
             displacement_max_m: 0.25,
             displacement_p99_m: 0.2,
+            displacement_max_over_size: 0.05,
+            displacement_p99_over_size: 0.01,
             length_m: 31.0,
             length_dropped_m: 1.0,
         },
+        min_edge_m: 0.0,
         findings: vec![
             Finding {
                 what: "short-line",
@@ -264,8 +269,14 @@ impl Tiny {
     /// All but sealing, one chunk a patch.
     pub fn write_parts(&self, writer: &Writer) -> Vec<ChunkReceipt> {
         writer.write_frame(&self.frame).unwrap();
+        let kinds = self.domain.kinds.len();
+        let limits = Limits {
+            tolerance_by_kind_m: vec![1.0; kinds],
+            min_edge_by_kind_m: vec![self.min_edge_m; kinds],
+            min_edge_m: self.min_edge_m,
+        };
         let lines = LineWork {
-            tolerance_by_kind_m: &vec![1.0; self.domain.kinds.len()],
+            limits: &limits,
             domain: &self.domain,
             dropped: &self.dropped,
             changes: &self.changes,

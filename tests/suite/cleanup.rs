@@ -22,6 +22,8 @@ fn usual(domain: &Domain) -> Options {
     Options {
         tolerance: Tolerance::ShareOfSize(0.5),
         by_kind: vec![Rule::FREE; domain.kinds.len()],
+        min_edge: cleanup::SHORTEST,
+        corner_deg: 30.0,
     }
 }
 
@@ -177,7 +179,7 @@ proptest! {
     }
 }
 
-/// One file a case: `size` metres, then lines `what[:kind] x y x y ...` in metres; `rule KIND KEY
+/// One file a case: `size`, `min_edge` metres, `corner` degrees, then lines `what[:kind] x y x y ...` in metres; `rule KIND KEY
 /// VALUE ...` for a kind. The expectation counts, and says how far each line of a kind moved.
 #[test]
 fn small_cases() {
@@ -199,10 +201,12 @@ fn small_cases() {
     }
 }
 
-fn outcome(text: &str) -> String {
+/// The line work, the size in metres and the options of a case.
+fn read_case(text: &str) -> (Domain, f64, Options) {
     let mut size_m = 0.0;
     let mut lines = Vec::new();
     let mut rules = Vec::new();
+    let (mut min_edge_m, mut corner_deg) = (None, 30.0);
     for row in text
         .lines()
         .filter(|row| !row.is_empty() && !row.starts_with('#'))
@@ -214,8 +218,13 @@ fn outcome(text: &str) -> String {
             continue;
         }
         let values: Vec<f64> = words.map(|word| word.parse().unwrap()).collect();
-        if what == "size" {
-            size_m = values[0];
+        match what {
+            "size" => size_m = values[0],
+            "min_edge" => min_edge_m = Some(values[0]),
+            "corner" => corner_deg = values[0],
+            _ => {}
+        }
+        if ["size", "min_edge", "corner"].contains(&what) {
             continue;
         }
         let mm = |metres: f64| (metres * 1000.0).round() as i32;
@@ -226,10 +235,17 @@ fn outcome(text: &str) -> String {
     }
     let domain = domain(&lines);
     let mut options = usual(&domain);
+    options.min_edge = min_edge_m.map_or(cleanup::SHORTEST, |it| it / size_m);
+    options.corner_deg = corner_deg;
     for words in rules {
         let kind = domain.kinds.iter().position(|it| it == words[0]).unwrap();
         options.by_kind[kind] = rule(&words[1..]);
     }
+    (domain, size_m, options)
+}
+
+fn outcome(text: &str) -> String {
+    let (domain, size_m, options) = read_case(text);
     let result = cleaned_by(&domain, size_m, &options);
     let mut rows = vec![format!(
         "nodes {} edges {}",

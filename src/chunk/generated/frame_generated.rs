@@ -482,7 +482,7 @@ impl<'a> Frame<'a> {
     // which contains a valid value in this slot
     unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, u32>>>(Frame::VT_UPPER, None).unwrap()}
   }
-  /// One a curve: weight of its cost. Count n costs weight * (max(n/g, g/n) - 1) with
+  /// One a curve: weight of its cost. Count n costs weight * (max(n/g, g/n)^2 - 1) with
   /// g = max(goal, lower).
   #[inline]
   pub fn weight(&self) -> ::flatbuffers::Vector<'a, f64> {

@@ -196,29 +196,33 @@ impl<'a> Lines<'a> {
   pub const VT_CELL_M: ::flatbuffers::VOffsetT = 10;
   pub const VT_KINDS: ::flatbuffers::VOffsetT = 12;
   pub const VT_KIND_TOLERANCE_M: ::flatbuffers::VOffsetT = 14;
-  pub const VT_NAMES: ::flatbuffers::VOffsetT = 16;
-  pub const VT_LINE_SOURCE: ::flatbuffers::VOffsetT = 18;
-  pub const VT_LINE_ROLE: ::flatbuffers::VOffsetT = 20;
-  pub const VT_LINE_KIND: ::flatbuffers::VOffsetT = 22;
-  pub const VT_LINE_NAME: ::flatbuffers::VOffsetT = 24;
-  pub const VT_POINT_START: ::flatbuffers::VOffsetT = 26;
-  pub const VT_POINTS: ::flatbuffers::VOffsetT = 28;
-  pub const VT_DROPPED_LINE: ::flatbuffers::VOffsetT = 30;
-  pub const VT_DROPPED_REASON: ::flatbuffers::VOffsetT = 32;
-  pub const VT_DROPPED_FROM_M: ::flatbuffers::VOffsetT = 34;
-  pub const VT_DROPPED_TO_M: ::flatbuffers::VOffsetT = 36;
-  pub const VT_WORDS: ::flatbuffers::VOffsetT = 38;
-  pub const VT_CHANGE_WORD: ::flatbuffers::VOffsetT = 40;
-  pub const VT_CHANGE_AT: ::flatbuffers::VOffsetT = 42;
-  pub const VT_CHANGE_MOVED_M: ::flatbuffers::VOffsetT = 44;
-  pub const VT_TALLY_WORD: ::flatbuffers::VOffsetT = 46;
-  pub const VT_TALLY_COUNT: ::flatbuffers::VOffsetT = 48;
-  pub const VT_TALLY_MOVED_MAX_M: ::flatbuffers::VOffsetT = 50;
-  pub const VT_DISPLACEMENT_MAX_M: ::flatbuffers::VOffsetT = 52;
-  pub const VT_DISPLACEMENT_P99_M: ::flatbuffers::VOffsetT = 54;
-  pub const VT_LENGTH_M: ::flatbuffers::VOffsetT = 56;
-  pub const VT_LENGTH_DROPPED_M: ::flatbuffers::VOffsetT = 58;
-  pub const VT_FINDINGS: ::flatbuffers::VOffsetT = 60;
+  pub const VT_KIND_MIN_EDGE_M: ::flatbuffers::VOffsetT = 16;
+  pub const VT_MIN_EDGE_M: ::flatbuffers::VOffsetT = 18;
+  pub const VT_NAMES: ::flatbuffers::VOffsetT = 20;
+  pub const VT_LINE_SOURCE: ::flatbuffers::VOffsetT = 22;
+  pub const VT_LINE_ROLE: ::flatbuffers::VOffsetT = 24;
+  pub const VT_LINE_KIND: ::flatbuffers::VOffsetT = 26;
+  pub const VT_LINE_NAME: ::flatbuffers::VOffsetT = 28;
+  pub const VT_POINT_START: ::flatbuffers::VOffsetT = 30;
+  pub const VT_POINTS: ::flatbuffers::VOffsetT = 32;
+  pub const VT_DROPPED_LINE: ::flatbuffers::VOffsetT = 34;
+  pub const VT_DROPPED_REASON: ::flatbuffers::VOffsetT = 36;
+  pub const VT_DROPPED_FROM_M: ::flatbuffers::VOffsetT = 38;
+  pub const VT_DROPPED_TO_M: ::flatbuffers::VOffsetT = 40;
+  pub const VT_WORDS: ::flatbuffers::VOffsetT = 42;
+  pub const VT_CHANGE_WORD: ::flatbuffers::VOffsetT = 44;
+  pub const VT_CHANGE_AT: ::flatbuffers::VOffsetT = 46;
+  pub const VT_CHANGE_MOVED_M: ::flatbuffers::VOffsetT = 48;
+  pub const VT_TALLY_WORD: ::flatbuffers::VOffsetT = 50;
+  pub const VT_TALLY_COUNT: ::flatbuffers::VOffsetT = 52;
+  pub const VT_TALLY_MOVED_MAX_M: ::flatbuffers::VOffsetT = 54;
+  pub const VT_DISPLACEMENT_MAX_M: ::flatbuffers::VOffsetT = 56;
+  pub const VT_DISPLACEMENT_P99_M: ::flatbuffers::VOffsetT = 58;
+  pub const VT_DISPLACEMENT_MAX_OVER_SIZE: ::flatbuffers::VOffsetT = 60;
+  pub const VT_DISPLACEMENT_P99_OVER_SIZE: ::flatbuffers::VOffsetT = 62;
+  pub const VT_LENGTH_M: ::flatbuffers::VOffsetT = 64;
+  pub const VT_LENGTH_DROPPED_M: ::flatbuffers::VOffsetT = 66;
+  pub const VT_FINDINGS: ::flatbuffers::VOffsetT = 68;
 
   #[inline]
   pub unsafe fn init_from_table(table: ::flatbuffers::Table<'a>) -> Self {
@@ -232,8 +236,11 @@ impl<'a> Lines<'a> {
     let mut builder = LinesBuilder::new(_fbb);
     builder.add_length_dropped_m(args.length_dropped_m);
     builder.add_length_m(args.length_m);
+    builder.add_displacement_p99_over_size(args.displacement_p99_over_size);
+    builder.add_displacement_max_over_size(args.displacement_max_over_size);
     builder.add_displacement_p99_m(args.displacement_p99_m);
     builder.add_displacement_max_m(args.displacement_max_m);
+    builder.add_min_edge_m(args.min_edge_m);
     builder.add_cell_m(args.cell_m);
     builder.add_origin_y_m(args.origin_y_m);
     builder.add_origin_x_m(args.origin_x_m);
@@ -256,6 +263,7 @@ impl<'a> Lines<'a> {
     if let Some(x) = args.line_role { builder.add_line_role(x); }
     if let Some(x) = args.line_source { builder.add_line_source(x); }
     if let Some(x) = args.names { builder.add_names(x); }
+    if let Some(x) = args.kind_min_edge_m { builder.add_kind_min_edge_m(x); }
     if let Some(x) = args.kind_tolerance_m { builder.add_kind_tolerance_m(x); }
     if let Some(x) = args.kinds { builder.add_kinds(x); }
     builder.add_schema(args.schema);
@@ -308,6 +316,22 @@ impl<'a> Lines<'a> {
     // Created from valid Table for this object
     // which contains a valid value in this slot
     unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, f64>>>(Lines::VT_KIND_TOLERANCE_M, None).unwrap()}
+  }
+  /// One a kind: mesh edges along its lines that are shorter than this are findings, metres.
+  #[inline]
+  pub fn kind_min_edge_m(&self) -> ::flatbuffers::Vector<'a, f64> {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, f64>>>(Lines::VT_KIND_MIN_EDGE_M, None).unwrap()}
+  }
+  /// The same away from lines, metres.
+  #[inline]
+  pub fn min_edge_m(&self) -> f64 {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<f64>(Lines::VT_MIN_EDGE_M, Some(0.0)).unwrap()}
   }
   /// Distinct names of lines, sorted.
   #[inline]
@@ -467,6 +491,21 @@ impl<'a> Lines<'a> {
     // which contains a valid value in this slot
     unsafe { self._tab.get::<f64>(Lines::VT_DISPLACEMENT_P99_M, Some(0.0)).unwrap()}
   }
+  /// Both as shares of the wished size along each line.
+  #[inline]
+  pub fn displacement_max_over_size(&self) -> f64 {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<f64>(Lines::VT_DISPLACEMENT_MAX_OVER_SIZE, Some(0.0)).unwrap()}
+  }
+  #[inline]
+  pub fn displacement_p99_over_size(&self) -> f64 {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<f64>(Lines::VT_DISPLACEMENT_P99_OVER_SIZE, Some(0.0)).unwrap()}
+  }
   /// Length of all lines inside the domain, metres.
   #[inline]
   pub fn length_m(&self) -> f64 {
@@ -505,6 +544,8 @@ impl ::flatbuffers::Verifiable for Lines<'_> {
      .visit_field::<f64>("cell_m", Self::VT_CELL_M, false)?
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, ::flatbuffers::ForwardsUOffset<&'_ str>>>>("kinds", Self::VT_KINDS, true)?
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, f64>>>("kind_tolerance_m", Self::VT_KIND_TOLERANCE_M, true)?
+     .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, f64>>>("kind_min_edge_m", Self::VT_KIND_MIN_EDGE_M, true)?
+     .visit_field::<f64>("min_edge_m", Self::VT_MIN_EDGE_M, false)?
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, ::flatbuffers::ForwardsUOffset<&'_ str>>>>("names", Self::VT_NAMES, true)?
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u32>>>("line_source", Self::VT_LINE_SOURCE, true)?
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u8>>>("line_role", Self::VT_LINE_ROLE, true)?
@@ -525,6 +566,8 @@ impl ::flatbuffers::Verifiable for Lines<'_> {
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, f64>>>("tally_moved_max_m", Self::VT_TALLY_MOVED_MAX_M, true)?
      .visit_field::<f64>("displacement_max_m", Self::VT_DISPLACEMENT_MAX_M, false)?
      .visit_field::<f64>("displacement_p99_m", Self::VT_DISPLACEMENT_P99_M, false)?
+     .visit_field::<f64>("displacement_max_over_size", Self::VT_DISPLACEMENT_MAX_OVER_SIZE, false)?
+     .visit_field::<f64>("displacement_p99_over_size", Self::VT_DISPLACEMENT_P99_OVER_SIZE, false)?
      .visit_field::<f64>("length_m", Self::VT_LENGTH_M, false)?
      .visit_field::<f64>("length_dropped_m", Self::VT_LENGTH_DROPPED_M, false)?
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, ::flatbuffers::ForwardsUOffset<Finding>>>>("findings", Self::VT_FINDINGS, true)?
@@ -539,6 +582,8 @@ pub struct LinesArgs<'a> {
     pub cell_m: f64,
     pub kinds: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, ::flatbuffers::ForwardsUOffset<&'a str>>>>,
     pub kind_tolerance_m: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, f64>>>,
+    pub kind_min_edge_m: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, f64>>>,
+    pub min_edge_m: f64,
     pub names: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, ::flatbuffers::ForwardsUOffset<&'a str>>>>,
     pub line_source: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u32>>>,
     pub line_role: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u8>>>,
@@ -559,6 +604,8 @@ pub struct LinesArgs<'a> {
     pub tally_moved_max_m: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, f64>>>,
     pub displacement_max_m: f64,
     pub displacement_p99_m: f64,
+    pub displacement_max_over_size: f64,
+    pub displacement_p99_over_size: f64,
     pub length_m: f64,
     pub length_dropped_m: f64,
     pub findings: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, ::flatbuffers::ForwardsUOffset<Finding<'a>>>>>,
@@ -573,6 +620,8 @@ impl<'a> Default for LinesArgs<'a> {
       cell_m: 0.0,
       kinds: None, // required field
       kind_tolerance_m: None, // required field
+      kind_min_edge_m: None, // required field
+      min_edge_m: 0.0,
       names: None, // required field
       line_source: None, // required field
       line_role: None, // required field
@@ -593,6 +642,8 @@ impl<'a> Default for LinesArgs<'a> {
       tally_moved_max_m: None, // required field
       displacement_max_m: 0.0,
       displacement_p99_m: 0.0,
+      displacement_max_over_size: 0.0,
+      displacement_p99_over_size: 0.0,
       length_m: 0.0,
       length_dropped_m: 0.0,
       findings: None, // required field
@@ -628,6 +679,14 @@ impl<'a: 'b, 'b, A: ::flatbuffers::Allocator + 'a> LinesBuilder<'a, 'b, A> {
   #[inline]
   pub fn add_kind_tolerance_m(&mut self, kind_tolerance_m: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , f64>>) {
     self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Lines::VT_KIND_TOLERANCE_M, kind_tolerance_m);
+  }
+  #[inline]
+  pub fn add_kind_min_edge_m(&mut self, kind_min_edge_m: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , f64>>) {
+    self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Lines::VT_KIND_MIN_EDGE_M, kind_min_edge_m);
+  }
+  #[inline]
+  pub fn add_min_edge_m(&mut self, min_edge_m: f64) {
+    self.fbb_.push_slot::<f64>(Lines::VT_MIN_EDGE_M, min_edge_m, 0.0);
   }
   #[inline]
   pub fn add_names(&mut self, names: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , ::flatbuffers::ForwardsUOffset<&'b  str>>>) {
@@ -710,6 +769,14 @@ impl<'a: 'b, 'b, A: ::flatbuffers::Allocator + 'a> LinesBuilder<'a, 'b, A> {
     self.fbb_.push_slot::<f64>(Lines::VT_DISPLACEMENT_P99_M, displacement_p99_m, 0.0);
   }
   #[inline]
+  pub fn add_displacement_max_over_size(&mut self, displacement_max_over_size: f64) {
+    self.fbb_.push_slot::<f64>(Lines::VT_DISPLACEMENT_MAX_OVER_SIZE, displacement_max_over_size, 0.0);
+  }
+  #[inline]
+  pub fn add_displacement_p99_over_size(&mut self, displacement_p99_over_size: f64) {
+    self.fbb_.push_slot::<f64>(Lines::VT_DISPLACEMENT_P99_OVER_SIZE, displacement_p99_over_size, 0.0);
+  }
+  #[inline]
   pub fn add_length_m(&mut self, length_m: f64) {
     self.fbb_.push_slot::<f64>(Lines::VT_LENGTH_M, length_m, 0.0);
   }
@@ -734,6 +801,7 @@ impl<'a: 'b, 'b, A: ::flatbuffers::Allocator + 'a> LinesBuilder<'a, 'b, A> {
     let o = self.fbb_.end_table(self.start_);
     self.fbb_.required(o, Lines::VT_KINDS,"kinds");
     self.fbb_.required(o, Lines::VT_KIND_TOLERANCE_M,"kind_tolerance_m");
+    self.fbb_.required(o, Lines::VT_KIND_MIN_EDGE_M,"kind_min_edge_m");
     self.fbb_.required(o, Lines::VT_NAMES,"names");
     self.fbb_.required(o, Lines::VT_LINE_SOURCE,"line_source");
     self.fbb_.required(o, Lines::VT_LINE_ROLE,"line_role");
@@ -766,6 +834,8 @@ impl ::core::fmt::Debug for Lines<'_> {
       ds.field("cell_m", &self.cell_m());
       ds.field("kinds", &self.kinds());
       ds.field("kind_tolerance_m", &self.kind_tolerance_m());
+      ds.field("kind_min_edge_m", &self.kind_min_edge_m());
+      ds.field("min_edge_m", &self.min_edge_m());
       ds.field("names", &self.names());
       ds.field("line_source", &self.line_source());
       ds.field("line_role", &self.line_role());
@@ -786,6 +856,8 @@ impl ::core::fmt::Debug for Lines<'_> {
       ds.field("tally_moved_max_m", &self.tally_moved_max_m());
       ds.field("displacement_max_m", &self.displacement_max_m());
       ds.field("displacement_p99_m", &self.displacement_p99_m());
+      ds.field("displacement_max_over_size", &self.displacement_max_over_size());
+      ds.field("displacement_p99_over_size", &self.displacement_p99_over_size());
       ds.field("length_m", &self.length_m());
       ds.field("length_dropped_m", &self.length_dropped_m());
       ds.field("findings", &self.findings());
