@@ -58,7 +58,7 @@ fn short_edge(graph: &Graph, edge: u32) -> Finding {
 fn narrow_gaps(graph: &Graph) -> Vec<Finding> {
     let mut gaps: Vec<(Point, [Point; 2], u32, u32, f64)> = Vec::new();
     let mut found = Vec::new();
-    for node in graph.nodes() {
+    for node in graph.all_nodes() {
         let limit_m = graph.measure.min_edge * graph.size_at_m(node);
         let reach = limit_m / graph.measure.grid().cell_m;
         let at = graph.point(node);
@@ -93,7 +93,7 @@ fn narrow_gaps(graph: &Graph) -> Vec<Finding> {
 }
 
 fn sharp_angles(graph: &Graph) -> Vec<Finding> {
-    let mut sharp = wedges(graph, SHARP_DEG, &graph.nodes());
+    let mut sharp = wedges(graph, SHARP_DEG, &graph.all_nodes());
     sharp.sort_by(|u, v| {
         let place = |node: u32| graph.point(node);
         (place(u.hub).cmp(&place(v.hub))).then_with(|| place(u.a).cmp(&place(v.a)))
