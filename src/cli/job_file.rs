@@ -10,6 +10,7 @@ use crate::ingest::CrsChoice;
 use crate::pipeline::job::CELL_M;
 use crate::pipeline::job::CORNER_DEG;
 use crate::pipeline::job::Job;
+use crate::pipeline::job::MATCH_SIDES;
 use crate::pipeline::job::SEAM_BUDGET_QUADS;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -35,6 +36,7 @@ struct JobFile {
     cell: Option<f64>,
     tile: Option<f64>,
     seam_budget: Option<u32>,
+    match_sides: Option<f64>,
     threads: Option<usize>,
 }
 
@@ -141,6 +143,7 @@ pub fn job(args: &BuildArgs) -> Result<Job, String> {
             .seam_budget
             .or(file.seam_budget)
             .unwrap_or(SEAM_BUDGET_QUADS),
+        match_sides: (args.match_sides.or(file.match_sides)).unwrap_or(MATCH_SIDES),
         threads: args.threads.or(file.threads).unwrap_or(0),
         force: args.force,
         resume: args.resume,
@@ -224,6 +227,12 @@ fn validate(job: &Job) -> Result<(), String> {
         return Err(format!(
             "the corner angle is {} degrees: it must lie in 5..90",
             job.corner_deg
+        ));
+    }
+    if !(0.0..=1000.0).contains(&job.match_sides) {
+        return Err(format!(
+            "match_sides is {}: it must lie in 0..1000",
+            job.match_sides
         ));
     }
     if job.seam_budget_quads < 1000 {

@@ -38,6 +38,9 @@ pub struct Job {
     pub without: Vec<Step>,
     /// A sub-domain with more quads than this is cut by seams.
     pub seam_budget_quads: u32,
+    /// What it is worth that the counts of a few-sided sub-domain fit a pattern, in the unit of what
+    /// counts cost; 0 for parity alone.
+    pub match_sides: f64,
     /// Worker threads; 0 for as many as there are cores.
     pub threads: usize,
     /// Replace an existing output.
@@ -55,6 +58,9 @@ pub const CELL_M: f64 = 0.001;
 /// Seam budget unless the job says otherwise: a patch of this size meshes in well under a second
 /// and holds about 2 MB.
 pub const SEAM_BUDGET_QUADS: u32 = 20_000;
+
+/// Worth of a pattern unless the job says otherwise: see the table in `benches/README.md`.
+pub const MATCH_SIDES: f64 = 0.5;
 
 impl Job {
     /// The tolerance where no kind says otherwise: as given, or half the size.
@@ -95,6 +101,7 @@ impl Job {
             "corner_deg": self.corner_deg,
             "without": self.without.iter().map(|step| step.name()).collect::<Vec<_>>(),
             "seam_budget_quads": self.seam_budget_quads,
+            "match_sides": self.match_sides,
         })
         .to_string()
     }

@@ -24,6 +24,7 @@ use crate::partition::subdomains::Partition;
 use crate::pipeline::error::Error;
 use crate::pipeline::job::Job;
 use crate::pipeline::progress::Stopwatch;
+use crate::pipeline::refusal;
 use crate::pipeline::tiles;
 use crate::seams;
 use crate::spill;
@@ -319,11 +320,22 @@ fn balance(
                 events_max: 1 << 31,
                 nodes_max: 1000,
                 rows_max: 20_000,
-                worth: 0.0,
+                worth: job.match_sides,
                 rounds_max: 20,
+                climb_max: 60,
+                neighbourhoods_max: 20,
             },
-        )?;
-        let note = format!("gap {:.4} %, {} rows", 100.0 * balance.gap(), balance.rows);
+        )
+        .map_err(|it| refusal::explain(it, domain, arrangement, partition))?;
+        let fit = &balance.structure;
+        let note = format!(
+            "gap {:.4} %; {} of {} blocks fit a pattern ({} without the wish), gap {:.2} %",
+            100.0 * balance.gap(),
+            fit.mapped,
+            fit.blocks,
+            fit.mapped_before,
+            100.0 * balance.structure_gap()
+        );
         Ok(((goals, balance), note))
     })
 }
