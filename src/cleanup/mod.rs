@@ -17,7 +17,8 @@
 //!    every angle below [`SHARP_DEG`] degrees.
 //!    Junctions, and corners that turn by more than [`Options::corner_deg`] between edges of at least
 //!    that length, remain nodes unless they are merged with what is near.
-//! 6. Same input, same bits. A tolerance of zero changes nothing.
+//! 6. Same input, same bits. A tolerance of zero changes nothing, nor does a second run on the
+//!    result, told what the first one had to leave ([`Options::left`]).
 //! 7. What a kind of line asks for ([`rules`]) holds in every step: its own tolerance, no move
 //!    beyond what it is held to, closed lines of it that keep an inside. Where two lines merge, the
 //!    one of higher priority moves only if the other cannot.
@@ -94,6 +95,7 @@ use crate::cleanup::wedges::Zip;
 use crate::domain::finding::Finding;
 use crate::domain::line::Domain;
 use crate::domain::size::SizeWish;
+use crate::geometry::point::Xy;
 use crate::noding::arrangement::Arrangement;
 
 /// How far a line may be from the mesh edges that represent it.
@@ -125,6 +127,9 @@ pub struct Options {
     /// Least length of an edge, as a share of the wished size along its lines; [`SHORTEST`] is
     /// usual.
     pub min_edge: f64,
+    /// If the line work was cleaned before: the places that had to be left as they are, projected
+    /// metres. Where nothing else is too short, too narrow or too sharp, it is left alone.
+    pub left: Option<Vec<Xy>>,
     /// A line turns at a corner if its direction changes by more than this, degrees.
     pub corner_deg: f64,
 }
@@ -159,7 +164,8 @@ pub fn clean(
     let measure = Measure::new(domain, sizes, options);
     let side = (sizes.default_m / domain.grid.cell_m).max(4.0);
     let mut graph = Graph::new(&arrangement, measure, side);
-    let is_on = graph.measure.allows_any();
+    let is_clean = (options.left.as_ref()).is_some_and(|left| leftovers::are_only(&graph, left));
+    let is_on = graph.measure.allows_any() && !is_clean;
     if is_on {
         make_room(&mut graph);
     }
