@@ -71,8 +71,7 @@ pub fn check(
     if !measure.allows_any() {
         return Ok(());
     }
-    let side = sizes.default_m / domain.grid.cell_m;
-    let graph = Graph::new(&cleaned.arrangement, measure, side.max(4.0));
+    let graph = Graph::new(&cleaned.arrangement, &measure);
     check_distances(&graph)?;
     check_coverage(domain, &graph, input, cleaned)?;
     check_lengths(&graph, cleaned)

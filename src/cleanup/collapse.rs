@@ -102,7 +102,8 @@ fn walk(
         side = usize::from(graph.edges[leaves as usize].ends[0] != at);
         edge = leaves;
     }
-    if !is_inside || area <= 0.0 || walk.len() > WALK_MAX {
+    let is_whole = walk.iter().all(|&(edge, _)| graph.may_change(edge));
+    if !is_whole || !is_inside || area <= 0.0 || walk.len() > WALK_MAX {
         return None;
     }
     let width = area / length / size;

@@ -7,8 +7,10 @@ use crate::cleanup::changes::Dropped;
 use crate::cleanup::changes::Reason;
 use crate::cleanup::index::Index;
 use crate::cleanup::measure::Measure;
+use crate::domain::line::Domain;
 use crate::geometry::point::Point;
 use crate::geometry::point::Xy;
+use crate::geometry::window::Window;
 use crate::noding::arrangement::Arrangement;
 use crate::noding::arrangement::Piece;
 use crate::noding::rim::rim_side;
@@ -77,10 +79,33 @@ pub(super) struct Draft {
     pub(super) inside: [bool; 2],
 }
 
+/// An edge that stands for itself, outside of any graph.
+#[derive(Clone, Debug)]
+pub(super) struct Loose {
+    pub(super) ends: [Point; 2],
+    pub(super) pieces: Pieces,
+    pub(super) inside: [bool; 2],
+}
+
+/// What may be done with a node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Stand {
+    /// Everything.
+    Open,
+    /// Everything, but nothing needs to be done unless something changes there.
+    Settled,
+    /// It may neither move nor go: others see it too.
+    Tied,
+}
+
 /// Nodes, edges and their index. Ids are never reused, so they order things the same on each run.
 pub(super) struct Graph<'a> {
-    pub(super) measure: Measure<'a>,
+    pub(super) measure: &'a Measure<'a>,
+    /// Where nodes may come to lie; everywhere if none.
+    bounds: Option<Window>,
     pub(super) at: Vec<Point>,
+    /// What may be done with each node.
+    stand: Vec<Stand>,
     /// Edges at each node.
     pub(super) star: Vec<SmallVec<[u32; 4]>>,
     pub(super) edges: Vec<Edge>,
@@ -92,24 +117,34 @@ pub(super) struct Graph<'a> {
 }
 
 impl<'a> Graph<'a> {
-    pub(super) fn new(arrangement: &Arrangement, measure: Measure<'a>, side: f64) -> Graph<'a> {
-        let mut graph = Graph {
-            measure,
-            at: arrangement.points.clone(),
-            star: vec![SmallVec::new(); arrangement.points.len()],
-            edges: Vec::with_capacity(arrangement.edges.len() * 2),
-            index: Index::new(side),
-            touched: Vec::new(),
-            changes: Vec::new(),
-            dropped: Vec::new(),
-        };
-        for (id, &ends) in arrangement.edges.iter().enumerate() {
-            let pieces: Pieces = arrangement.pieces_of(id as u32).into();
-            let rim = rim_side(graph.measure.domain, &pieces);
-            let inside = [rim >= 0, rim <= 0];
+    pub(super) fn new(arrangement: &Arrangement, measure: &'a Measure<'a>) -> Graph<'a> {
+        let mut graph = Graph::without_edges(measure, arrangement.points.clone(), None);
+        for (edge, &ends) in arrangement.edges.iter().enumerate() {
+            let (pieces, inside) = as_cut(arrangement, measure.domain, edge as u32);
             graph.add(ends, pieces, inside);
         }
         graph
+    }
+
+    /// The graph of these nodes, in which everything is still to be done.
+    pub(super) fn without_edges(
+        measure: &'a Measure<'a>,
+        at: Vec<Point>,
+        bounds: Option<Window>,
+    ) -> Graph<'a> {
+        let side = measure.default_m / measure.grid().cell_m;
+        Graph {
+            measure,
+            bounds,
+            stand: vec![Stand::Open; at.len()],
+            star: vec![SmallVec::new(); at.len()],
+            edges: Vec::with_capacity(4 * at.len()),
+            index: Index::new(side.max(4.0)),
+            touched: Vec::new(),
+            changes: Vec::new(),
+            dropped: Vec::new(),
+            at,
+        }
     }
 
     /// Adds an edge that is not there yet.
@@ -127,11 +162,49 @@ impl<'a> Graph<'a> {
         });
         for node in ends {
             self.star[node as usize].push(id);
-            self.touched.push(node);
+            self.touch(node);
         }
         self.index
             .insert(id, self.at[ends[0] as usize], self.at[ends[1] as usize]);
         id
+    }
+
+    /// Something changed at this node: it is to be looked at again.
+    fn touch(&mut self, node: u32) {
+        self.touched.push(node);
+        if self.stand[node as usize] == Stand::Settled {
+            self.stand[node as usize] = Stand::Open;
+        }
+    }
+
+    /// A new node without edges.
+    pub(super) fn add_node(&mut self, p: Point) -> u32 {
+        self.at.push(p);
+        self.stand.push(Stand::Open);
+        self.star.push(SmallVec::new());
+        self.at.len() as u32 - 1
+    }
+
+    pub(super) fn set_stand(&mut self, node: u32, stand: Stand) {
+        self.stand[node as usize] = stand;
+    }
+
+    /// True if a node may move or go.
+    pub(super) fn is_free(&self, node: u32) -> bool {
+        self.stand[node as usize] != Stand::Tied
+    }
+
+    /// True if an edge may change: one of its ends is free.
+    pub(super) fn may_change(&self, edge: u32) -> bool {
+        self.edges[edge as usize]
+            .ends
+            .iter()
+            .any(|&it| self.is_free(it))
+    }
+
+    /// True if a node may come to lie here.
+    pub(super) fn reaches(&self, p: Point) -> bool {
+        self.bounds.is_none_or(|it| it.owns(p))
     }
 
     fn size_and_rank(&self, pieces: &[Piece]) -> (f64, f64) {
@@ -154,7 +227,7 @@ impl<'a> Graph<'a> {
         let ends = it.ends;
         for node in ends {
             self.star[node as usize].retain(|held| *held != edge);
-            self.touched.push(node);
+            self.touch(node);
         }
         self.index
             .remove(edge, self.at[ends[0] as usize], self.at[ends[1] as usize]);
@@ -287,9 +360,16 @@ impl<'a> Graph<'a> {
     }
 
     /// All nodes that have edges.
-    pub(super) fn nodes(&self) -> Vec<u32> {
+    pub(super) fn all_nodes(&self) -> Vec<u32> {
         let all = 0..self.at.len() as u32;
         all.filter(|&node| self.degree(node) > 0).collect()
+    }
+
+    /// Those at which there is something to do.
+    pub(super) fn nodes(&self) -> Vec<u32> {
+        let all = 0..self.at.len() as u32;
+        let is_open = |node: u32| self.degree(node) > 0 && self.stand[node as usize] == Stand::Open;
+        all.filter(|&node| is_open(node)).collect()
     }
 
     /// The nodes touched since `touched` had this length, and their neighbours.
@@ -333,6 +413,13 @@ impl<'a> Graph<'a> {
         }
         Arrangement::from_parts(&self.at, parts)
     }
+}
+
+/// What an edge of the arrangement brings to a graph: its pieces, and its sides.
+pub(super) fn as_cut(arrangement: &Arrangement, domain: &Domain, edge: u32) -> (Pieces, [bool; 2]) {
+    let pieces: Pieces = arrangement.pieces_of(edge).into();
+    let rim = rim_side(domain, &pieces);
+    (pieces, [rim >= 0, rim <= 0])
 }
 
 /// Keeps at most two stretches of each line in each direction, the longest. Where a line meanders

@@ -1,13 +1,12 @@
 //! A hash grid over segments: which edges come near a segment.
 
 use rustc_hash::FxHashMap;
-use smallvec::SmallVec;
 
 use crate::geometry::point::Point;
 
 /// Edges by the square cells of side `side` that they pass. A segment occupies every cell that it
 /// touches (and now and then one beside it), so a query misses nothing. Queries and updates cost
-/// O(cells passed + edges found).
+/// O(cells passed + edges there).
 pub(super) struct Index {
     side: f64,
     /// Cells by blocks: most queries stay inside one, and hash once.
@@ -18,7 +17,15 @@ pub(super) struct Index {
 const BLOCK: u32 = 2;
 
 /// The cells of a block, row by row.
-type Block = [SmallVec<[u32; 4]>; 1 << (2 * BLOCK)];
+type Block = [Vec<Held>; 1 << (2 * BLOCK)];
+
+/// An edge with its bounding box, so that a query need not look it up.
+#[derive(Clone, Copy)]
+struct Held {
+    edge: u32,
+    min: Point,
+    max: Point,
+}
 
 impl Index {
     /// An empty index with cells of `side` grid units.
@@ -31,8 +38,10 @@ impl Index {
 
     pub(super) fn insert(&mut self, edge: u32, a: Point, b: Point) {
         let blocks = &mut self.blocks;
+        let (min, max) = bounding_box(a, b);
         passed(self.side, a, b, 0.0, |cell| {
-            blocks.entry(block(cell)).or_default()[within(cell)].push(edge);
+            let held = Held { edge, min, max };
+            blocks.entry(block(cell)).or_default()[within(cell)].push(held);
         });
     }
 
@@ -41,32 +50,44 @@ impl Index {
         passed(self.side, a, b, 0.0, |cell| {
             let held = blocks.get_mut(&block(cell));
             let held = &mut held.expect("a removed edge was inserted")[within(cell)];
-            let at = held.iter().position(|&it| it == edge);
+            let at = held.iter().position(|it| it.edge == edge);
             held.swap_remove(at.expect("an edge occupies all its cells"));
         });
     }
 
-    /// All edges with a cell within `margin` of the segment `a b`, sorted, each once.
+    /// All edges whose bounding box comes within `margin` of that of the segment `a b` and that
+    /// share a cell with what is within `margin` of it; sorted, each once.
     pub(super) fn near(&self, a: Point, b: Point, margin: f64, found: &mut Vec<u32>) {
         found.clear();
+        let (min, max) = bounding_box(a, b);
+        let reach = margin.ceil() as i32 + 1;
+        let (left, right) = (min.x.saturating_sub(reach), max.x.saturating_add(reach));
+        let (bottom, top) = (min.y.saturating_sub(reach), max.y.saturating_add(reach));
         let mut last: (Option<(i32, i32)>, Option<&Block>) = (None, None);
-        let mut cells = 0;
         passed(self.side, a, b, margin + 1.0, |cell| {
             if last.0 != Some(block(cell)) {
                 last = (Some(block(cell)), self.blocks.get(&block(cell)));
             }
-            if let Some(held) = last.1.map(|it| &it[within(cell)])
-                && !held.is_empty()
-            {
-                found.extend_from_slice(held);
-                cells += 1;
+            let Some(block) = last.1 else {
+                return;
+            };
+            for it in &block[within(cell)] {
+                let aside = it.max.x < left || it.min.x > right;
+                if !(aside || it.max.y < bottom || it.min.y > top) {
+                    found.push(it.edge);
+                }
             }
         });
         found.sort_unstable();
-        if cells > 1 {
-            found.dedup();
-        }
+        found.dedup();
     }
+}
+
+fn bounding_box(a: Point, b: Point) -> (Point, Point) {
+    (
+        Point::new(a.x.min(b.x), a.y.min(b.y)),
+        Point::new(a.x.max(b.x), a.y.max(b.y)),
+    )
 }
 
 fn block((column, row): (i32, i32)) -> (i32, i32) {

@@ -34,10 +34,10 @@ pub(super) fn are_only(graph: &Graph, left: &[Xy]) -> bool {
         .all(|&edge| !is_short(graph, edge) || is_known(projected(graph, middle(graph, edge))));
     let mut found = Vec::new();
     edges_are
-        && (graph.nodes().iter()).all(|&node| {
+        && (graph.all_nodes().iter()).all(|&node| {
             (gaps_at(graph, node, &mut found).iter()).all(|gap| is_known(projected(graph, gap.at)))
         })
-        && (wedges(graph, SHARP_DEG, &graph.nodes()).iter())
+        && (wedges(graph, SHARP_DEG, &graph.all_nodes()).iter())
             .all(|wedge| is_known(projected(graph, graph.metres(wedge.hub))))
 }
 
@@ -114,7 +114,7 @@ fn gaps_at(graph: &Graph, node: u32, found: &mut Vec<u32>) -> Vec<Gap> {
 
 fn narrow_gaps(graph: &Graph) -> Vec<Finding> {
     let mut found = Vec::new();
-    let mut gaps: Vec<Gap> = (graph.nodes().iter())
+    let mut gaps: Vec<Gap> = (graph.all_nodes().iter())
         .flat_map(|&node| gaps_at(graph, node, &mut found))
         .collect();
     gaps.sort_by_key(|it| (graph.point(it.node), ends_in_order(graph, it.edge)));
@@ -138,7 +138,7 @@ fn narrow_gaps(graph: &Graph) -> Vec<Finding> {
 }
 
 fn sharp_angles(graph: &Graph) -> Vec<Finding> {
-    let mut sharp = wedges(graph, SHARP_DEG, &graph.nodes());
+    let mut sharp = wedges(graph, SHARP_DEG, &graph.all_nodes());
     sharp.sort_by(|u, v| {
         let place = |node: u32| graph.point(node);
         (place(u.hub).cmp(&place(v.hub))).then_with(|| place(u.a).cmp(&place(v.a)))

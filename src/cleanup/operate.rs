@@ -28,7 +28,7 @@ type Drafts = SmallVec<[Draft; 6]>;
 impl Graph<'_> {
     /// Moves node `v` to the free point `p`. `share`: of the tolerance.
     pub(super) fn shift(&mut self, v: u32, p: Point, share: f64) -> bool {
-        if p == self.point(v) {
+        if p == self.point(v) || !self.is_free(v) || !self.reaches(p) {
             return false;
         }
         let mut drafts = self.drafts(v);
@@ -50,6 +50,9 @@ impl Graph<'_> {
     /// Moves node `v` onto node `w`: an edge between them is contracted, edges to the same
     /// neighbour become one.
     pub(super) fn merge(&mut self, v: u32, w: u32, share: f64) -> bool {
+        if !self.is_free(v) || !self.is_free(w) {
+            return false;
+        }
         let (q, p) = (self.point(v), self.point(w));
         let contracted = self.find(v, w);
         let along_rim = contracted.is_some_and(|edge| self.edges[edge as usize].is_rim());
@@ -107,7 +110,7 @@ impl Graph<'_> {
             Bend::To(node) => (self.point(node), None),
             Bend::At(p) => (p, Some(p)),
         };
-        if p == a_at || p == b_at {
+        if p == a_at || p == b_at || !self.may_bend(edge, bend) {
             return None;
         }
         if let Bend::To(node) = bend
@@ -172,7 +175,7 @@ impl Graph<'_> {
     /// Removes a node of degree two that all lines at it pass; returns the edge that replaces its
     /// two. With `close`, that edge may fall onto one that is there.
     pub(super) fn straighten(&mut self, v: u32, share: f64, close: bool) -> Option<u32> {
-        let (a, b, pieces) = self.passing(v)?;
+        let (a, b, pieces) = self.is_free(v).then(|| self.passing(v))??;
         let (p, q) = (self.point(a), self.point(b));
         let chord = (self.metres(a), self.metres(b));
         let fits = |piece| self.measure.fits(piece, chord.0, chord.1, share);
@@ -210,11 +213,12 @@ impl Graph<'_> {
         Some(self.add_or_fuse(a, draft, fused))
     }
 
-    /// A new node without edges.
-    pub(super) fn add_node(&mut self, p: Point) -> u32 {
-        self.at.push(p);
-        self.star.push(SmallVec::new());
-        self.at.len() as u32 - 1
+    fn may_bend(&self, edge: u32, bend: Bend) -> bool {
+        let is_in = match bend {
+            Bend::To(node) => self.is_free(node),
+            Bend::At(p) => self.reaches(p),
+        };
+        is_in && self.may_change(edge)
     }
 
     /// The edges of `v` as drafts away from it.

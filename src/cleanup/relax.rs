@@ -32,19 +32,20 @@ const STILL: f64 = 0.002;
 pub(super) fn relax(graph: &mut Graph, wanted: &Wanted, nodes: &[u32]) {
     let mut active = nodes.to_vec();
     let mut found = Vec::new();
+    let mut around = Vec::new();
     for _ in 0..wanted.rounds {
         let mut again = Vec::new();
         for &node in &active {
-            if graph.degree(node) == 0 || stays(graph, wanted, node) {
+            if graph.degree(node) == 0 || !graph.is_free(node) || stays(graph, wanted, node) {
                 continue;
             }
-            let push = push_m(graph, wanted, node, &mut found);
+            let push = push_m(graph, wanted, node, &mut found, &mut around);
             let push = along_rim(graph, node, push);
             let size = graph.size_at_m(node);
             if distance(push, [0.0; 2]) > STILL * size && pushed(graph, wanted, node, push) {
                 again.push(node);
                 again.extend(graph.neighbours(node));
-                again.extend(found.iter().flat_map(|&e| graph.edges[e as usize].ends));
+                again.extend_from_slice(&around);
             }
         }
         again.retain(|&node| graph.degree(node) > 0);
@@ -77,8 +78,15 @@ fn pushed(graph: &mut Graph, wanted: &Wanted, node: u32, push: Xy) -> bool {
     })
 }
 
-/// Where a node is pushed by all that is too near, metres. Leaves the edges around it in `found`.
-fn push_m(graph: &Graph, wanted: &Wanted, node: u32, found: &mut Vec<u32>) -> Xy {
+/// Where a node is pushed by all that is too near, metres. Leaves the nodes in `around` that its
+/// edges might push, or theirs it; `found` is scratch.
+fn push_m(
+    graph: &Graph,
+    wanted: &Wanted,
+    node: u32,
+    found: &mut Vec<u32>,
+    around: &mut Vec<u32>,
+) -> Xy {
     let at = graph.metres(node);
     let mut push = [0.0, 0.0];
     let mut add = |by: Xy, length: f64| {
@@ -97,9 +105,11 @@ fn push_m(graph: &Graph, wanted: &Wanted, node: u32, found: &mut Vec<u32>) -> Xy
     let reach = wanted.gap * size / graph.measure.grid().cell_m;
     let p = graph.point(node);
     graph.index.near(p, p, reach, found);
+    around.clear();
     for &edge in found.iter() {
         let wants = wanted.gap * graph.edges[edge as usize].size_m.min(size);
         if let Some(gap) = gap_below_m(graph, node, edge, wants) {
+            around.extend(graph.edges[edge as usize].ends);
             let (a, b) = graph.ends_m(edge);
             let t = to_segment(at, a, b).1;
             add(unit(between(a, b, t), at), 0.5 * (wants - gap));
@@ -116,6 +126,7 @@ fn push_m(graph: &Graph, wanted: &Wanted, node: u32, found: &mut Vec<u32>) -> Xy
         others.extend(ends.filter(|&it| is_beside(graph.metres(it), at, far, wanted.gap * size)));
         others.sort_unstable();
         others.dedup();
+        around.extend_from_slice(&others);
         for &other in &others {
             let wants = wanted.gap * size.min(graph.size_at_m(other));
             if let Some(gap) = gap_below_m(graph, other, edge, wants) {

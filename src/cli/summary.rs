@@ -3,6 +3,7 @@
 use crate::check::verdict::Verdict;
 use crate::chunk::reader::Mesh;
 use crate::export::Stats;
+use crate::meshing::patch::Method;
 use crate::pipeline::job::Job;
 use crate::pipeline::outcome::Estimate;
 use crate::pipeline::outcome::Outcome;
@@ -31,9 +32,6 @@ impl Summary {
         }
     }
 }
-
-/// Names of the methods in the order of `Method`.
-pub(super) const METHODS: [&str; 5] = ["mapping", "looping", "strip", "indirect", "last_resort"];
 
 pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
     let q = &outcome.verdict.quality;
@@ -91,7 +89,7 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
 }
 
 fn methods(verdict: &Verdict) -> Value {
-    (METHODS.iter().zip(&verdict.quality.methods))
+    (Method::NAMES.iter().zip(&verdict.quality.methods))
         .map(|(name, it)| {
             let counts = json!({"subdomains": it.subdomains, "quads": it.quads});
             (name.to_string(), counts)

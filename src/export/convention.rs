@@ -6,6 +6,7 @@ use crate::export::classic::Type;
 use crate::export::classic::Value;
 use crate::export::classic::Variable;
 use crate::export::classic::text;
+use crate::meshing::patch::Method;
 
 const NODES: usize = 0;
 const FACES: usize = 1;
@@ -95,10 +96,7 @@ fn method() -> Variable {
     let attributes = vec![
         text("long_name", "how the sub-domain was meshed"),
         ("flag_values", Value::Bytes(vec![0, 1, 2, 3, 4])),
-        text(
-            "flag_meanings",
-            "mapping looping strip indirect last_resort",
-        ),
+        text("flag_meanings", &Method::NAMES.join(" ")),
     ];
     on("face", "mesh2d_method", Type::Byte, attributes)
 }

@@ -39,6 +39,11 @@ pub enum Method {
     LastResort = 4,
 }
 
+impl Method {
+    /// The methods' names, by number, as exports and summaries write them.
+    pub const NAMES: [&'static str; 5] = ["mapping", "looping", "strip", "indirect", "last_resort"];
+}
+
 /// The mesh of one sub-domain.
 ///
 /// Promises: `nodes[..loops.nodes.len()]` are the boundary nodes, unmoved; every quad is

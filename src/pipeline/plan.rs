@@ -238,8 +238,8 @@ fn clean(
         let note = format!("{} nodes, {} edges", noded.points.len(), noded.edges.len());
         Ok(((noded, clipped), note))
     })?;
-    watch.stage("cleanup", 1, |_| {
-        let made = cleanup::clean(domain, sizes, noded, options);
+    watch.stage("cleanup", 1000, |count| {
+        let made = tiles::clean(domain, sizes, noded, options, count);
         findings.extend(made.findings);
         let mut dropped: Vec<Dropped> = clipped.iter().map(clipped_stretch).collect();
         dropped.extend(made.dropped);

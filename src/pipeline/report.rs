@@ -7,6 +7,7 @@ use crate::check::quality::Quality;
 use crate::check::verdict::Verdict;
 use crate::chunk::reader::Mesh;
 use crate::geometry::point::Xy;
+use crate::meshing::patch::Method;
 use crate::pipeline::error::Error;
 use crate::pipeline::log::Log;
 use crate::report::html::html;
@@ -24,9 +25,6 @@ const TALL: u32 = 820;
 
 /// How much a zoom shows, in sizes across.
 const ZOOM_SIZES: f64 = 36.0;
-
-/// Names of the methods in the order of `Method`.
-pub const METHODS: [&str; 5] = ["mapping", "looping", "strip", "indirect", "last resort"];
 
 /// Checks `mesh`, writes the page to `out` and its pictures to `picture`; true if every promise
 /// holds.
@@ -331,11 +329,11 @@ fn promises(verdict: &Verdict) -> Table {
 
 fn methods(quality: &Quality) -> Table {
     let all: u64 = quality.methods.iter().map(|it| it.quads).sum();
-    let rows = (METHODS.iter().zip(&quality.methods))
+    let rows = (Method::NAMES.iter().zip(&quality.methods))
         .filter(|(_, it)| it.subdomains > 0)
         .map(|(name, it)| {
             vec![
-                name.to_string(),
+                name.replace('_', " "),
                 it.subdomains.to_string(),
                 it.quads.to_string(),
                 format!("{:.2} %", 100.0 * it.quads as f64 / all.max(1) as f64),
@@ -373,7 +371,7 @@ fn places(title: &str, note: &str, places: &[Place]) -> Table {
                 format!("{:.3}", it.scaled_jacobian),
                 format!("{:.3}", it.hydraulic_m),
                 it.subdomain.to_string(),
-                METHODS[usize::from(it.method).min(4)].to_string(),
+                Method::NAMES[usize::from(it.method).min(4)].replace('_', " "),
             ]
         })
         .collect();

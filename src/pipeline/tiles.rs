@@ -1,6 +1,9 @@
-//! Work that is done tile by tile on all cores: noding, and the walks of the partition.
+//! Work that is done tile by tile on all cores: noding, clean-up, and the walks of the partition.
 
+use crate::cleanup;
+use crate::cleanup::Cleaned;
 use crate::domain::line::Domain;
+use crate::domain::size::SizeWish;
 use crate::noding;
 use crate::noding::arrangement::Arrangement;
 use crate::partition;
@@ -43,6 +46,26 @@ pub(super) fn node(domain: &Domain, tile_cells: i32, count: &(dyn Fn(u64) + Sync
         })
         .collect();
     noding::stitch(domain, nodes)
+}
+
+/// Cleans all districts in parallel and joins them. They do not depend on the tiles.
+pub(super) fn clean(
+    domain: &Domain,
+    sizes: &SizeWish,
+    arrangement: Arrangement,
+    options: &cleanup::Options,
+    count: &(dyn Fn(u64) + Sync),
+) -> Cleaned {
+    let site = cleanup::site(domain, sizes, arrangement, options, &cleanup::GRAIN);
+    let share = 1000 / (site.districts.len() + 1) as u64;
+    let made = (site.districts.par_iter())
+        .map(|district| {
+            let made = cleanup::clean_district(&site, district);
+            count(share);
+            made
+        })
+        .collect();
+    cleanup::join(site, made)
 }
 
 /// Walks all tiles in parallel and joins the walks into sub-domains.

@@ -16,6 +16,8 @@ use polder::geometry::point::Xy;
 use polder::noding;
 use polder::noding::arrangement::Arrangement;
 use proptest::prelude::*;
+use rayon::iter::IntoParallelRefIterator;
+use rayon::iter::ParallelIterator;
 
 /// Half the size, no rule for any kind.
 fn usual(domain: &Domain) -> Options {
@@ -201,6 +203,66 @@ proptest! {
             prop_assert_eq!(again.arrangement, untold.arrangement);
         }
     }
+}
+
+/// Districts of a few edges each: all that happens at their borders happens all the time.
+const TINY: cleanup::Grain = cleanup::Grain {
+    edges_max: 12,
+    side_min: 3.0,
+};
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(150))]
+
+    #[test]
+    fn promises_hold_over_many_districts(domain in messy_domain(), size in 1.0..5.0_f64) {
+        let input = noded(&domain);
+        let sizes = SizeWish::uniform(size, 1);
+        let site = cleanup::site(&domain, &sizes, input.clone(), &usual(&domain), &TINY);
+        let made = site.districts.iter().map(|it| cleanup::clean_district(&site, it)).collect();
+        let result = cleanup::join(site, made);
+        let verdict = cleanup::check::check(&domain, &sizes, &usual(&domain), &input, &result);
+        prop_assert_eq!(verdict, Ok(()));
+    }
+
+    #[test]
+    fn districts_at_once_or_one_by_one_are_the_same(domain in messy_domain()) {
+        let sizes = SizeWish::uniform(3.0, 1);
+        let site = || cleanup::site(&domain, &sizes, noded(&domain), &usual(&domain), &TINY);
+        let (first, second) = (site(), site());
+        let clean = |it| cleanup::clean_district(&first, it);
+        let backwards: Vec<_> = first.districts.iter().rev().map(clean).collect();
+        let one_by_one: Vec<_> = backwards.into_iter().rev().collect();
+        let at_once: Vec<_> = second
+            .districts
+            .par_iter()
+            .map(|it| cleanup::clean_district(&second, it))
+            .collect();
+        prop_assert_eq!(cleanup::join(first, one_by_one), cleanup::join(second, at_once));
+    }
+}
+
+/// A grid of streets, each drawn twice, over 3 km: enough for districts of the usual grain.
+#[test]
+fn a_town_is_cleaned_by_districts() {
+    let mut lines = vec![("boundary", square(3_000_000))];
+    for k in 1..100 {
+        let at = 30_000 * k + 7 * (k * k % 1000);
+        for shift in [0, 900 + 11 * k] {
+            lines.push(("", vec![(at + shift, 1_000), (at - shift, 2_990_000)]));
+            lines.push(("", vec![(1_000, at - shift), (2_990_000, at + shift)]));
+        }
+    }
+    let town = domain(&lines);
+    let sizes = SizeWish::uniform(12.0, 1);
+    let site = cleanup::site(&town, &sizes, noded(&town), &usual(&town), &cleanup::GRAIN);
+    assert!(site.districts.len() > 3, "{}", site.districts.len());
+    let made: Vec<_> = site
+        .districts
+        .par_iter()
+        .map(|it| cleanup::clean_district(&site, it))
+        .collect();
+    assert_eq!(cleanup::join(site, made), cleaned(&town, 12.0));
 }
 
 /// One file a case: `size`, `min_edge` metres, `corner` degrees, then lines `what[:kind] x y x y ...` in metres; `rule KIND KEY
