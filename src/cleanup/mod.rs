@@ -102,6 +102,7 @@ use crate::cleanup::wedges::Zip;
 use crate::domain::finding::Finding;
 use crate::domain::line::Domain;
 use crate::domain::size::SizeWish;
+use crate::geometry::point::Xy;
 use crate::noding::arrangement::Arrangement;
 
 pub use crate::cleanup::districts::District;
@@ -142,6 +143,9 @@ pub struct Options {
     /// Least length of an edge, as a share of the wished size along its lines; [`SHORTEST`] is
     /// usual.
     pub min_edge: f64,
+    /// If the line work was cleaned before: the places that had to be left as they are, projected
+    /// metres. Where nothing else is too short, too narrow or too sharp, it is left alone.
+    pub left: Option<Vec<Xy>>,
     /// A line turns at a corner if its direction changes by more than this, degrees.
     pub corner_deg: f64,
     /// Steps that are left out, to measure what they are worth.
