@@ -38,6 +38,8 @@ fn row(family: &str, subdomains: usize) {
         rows_max: 0,
         worth: 0.0,
         rounds_max: 20,
+        climb_max: 60,
+        neighbourhoods_max: 20,
     };
     let start = Instant::now();
     let made = parity::balance(&partition, &goals, &alone).expect("a feasible city");

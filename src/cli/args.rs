@@ -122,6 +122,9 @@ pub struct BuildArgs {
     /// degrees. Default: 30.
     #[arg(long)]
     pub corner_angle: Option<f64>,
+    /// A step of clean-up to leave out, to measure what it is worth; may be given again.
+    #[arg(long, value_name = "STEP", hide = true)]
+    pub without: Vec<String>,
     /// `local` for plane coordinates without a reference system, or an EPSG code that overrides
     /// the file's.
     #[arg(long)]
@@ -135,6 +138,10 @@ pub struct BuildArgs {
     /// A sub-domain with more quads than this is cut by seams.
     #[arg(long)]
     pub seam_budget: Option<u32>,
+    /// What it is worth that opposite sides of a sub-domain get equal counts (and the like for three,
+    /// five and six sides): 1 as much as one edge at 1.4 times its wished length. 0: nothing.
+    #[arg(long)]
+    pub match_sides: Option<f64>,
     /// Replace an existing output.
     #[arg(long)]
     pub force: bool,

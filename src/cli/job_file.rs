@@ -4,11 +4,13 @@ use crate::cleanup::rules::HOLD_M;
 use crate::cleanup::rules::PRIORITY_MAX;
 use crate::cleanup::rules::Rule;
 use crate::cleanup::rules::SmallLoops;
+use crate::cleanup::steps::Step;
 use crate::cli::args::BuildArgs;
 use crate::ingest::CrsChoice;
 use crate::pipeline::job::CELL_M;
 use crate::pipeline::job::CORNER_DEG;
 use crate::pipeline::job::Job;
+use crate::pipeline::job::MATCH_SIDES;
 use crate::pipeline::job::SEAM_BUDGET_QUADS;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -34,6 +36,7 @@ struct JobFile {
     cell: Option<f64>,
     tile: Option<f64>,
     seam_budget: Option<u32>,
+    match_sides: Option<f64>,
     threads: Option<usize>,
 }
 
@@ -135,16 +138,29 @@ pub fn job(args: &BuildArgs) -> Result<Job, String> {
         cell_m: file.cell.unwrap_or(CELL_M),
         tile_m: args.tile.or(file.tile),
         corner_deg: (args.corner_angle.or(file.corner_angle)).unwrap_or(CORNER_DEG),
+        without: without(&args.without)?,
         seam_budget_quads: args
             .seam_budget
             .or(file.seam_budget)
             .unwrap_or(SEAM_BUDGET_QUADS),
+        match_sides: (args.match_sides.or(file.match_sides)).unwrap_or(MATCH_SIDES),
         threads: args.threads.or(file.threads).unwrap_or(0),
         force: args.force,
         resume: args.resume,
     };
     validate(&job)?;
     Ok(job)
+}
+
+/// The steps of these names.
+fn without(names: &[String]) -> Result<Vec<Step>, String> {
+    let step = |name: &String| {
+        Step::named(name).ok_or_else(|| {
+            let known: Vec<&str> = Step::NAMED.iter().map(|it| it.0).collect();
+            format!("no step of clean-up is called {name}: {}", known.join(", "))
+        })
+    };
+    names.iter().map(step).collect()
 }
 
 fn read(path: &Path) -> Result<JobFile, String> {
@@ -211,6 +227,12 @@ fn validate(job: &Job) -> Result<(), String> {
         return Err(format!(
             "the corner angle is {} degrees: it must lie in 5..90",
             job.corner_deg
+        ));
+    }
+    if !(0.0..=1000.0).contains(&job.match_sides) {
+        return Err(format!(
+            "match_sides is {}: it must lie in 0..1000",
+            job.match_sides
         ));
     }
     if job.seam_budget_quads < 1000 {

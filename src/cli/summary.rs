@@ -71,7 +71,13 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         "length_m": outcome.length_m,
         "length_dropped_m": outcome.length_dropped_m,
         "length_shrunk_m": outcome.length_shrunk_m,
+        "sharp_angles_before": outcome.sharp_angles[0],
+        "sharp_angles_after": outcome.sharp_angles[1],
         "ilp_gap": outcome.ilp_gap,
+        "pattern_gap": outcome.pattern_gap,
+        "blocks": outcome.blocks[0],
+        "blocks_fit": outcome.blocks[1],
+        "blocks_fit_without_wish": outcome.blocks[2],
         "odd_share": outcome.odd_share,
         "largest_patch_over_budget": outcome.largest_patch_over_budget,
         "findings": outcome.findings,
@@ -106,7 +112,7 @@ fn first_lines(job: &Job, outcome: &Outcome) -> String {
          scaled Jacobian: mean {:.3}, 1 % {:.2}, least {:.3}; irregular nodes {:.1} %\n\
          lines moved at most {:.2} m (99 % below {:.2} m, {:.3} of the size); \
          dropped {:.1} m of {:.0} m, {:.1} m became nodes\n\
-         parity: gap {:.4} %\n",
+         parity: gap {:.4} %; {} of {} few-sided sub-domains fit a pattern, gap {:.2} %\n",
         job.output.display(),
         q.scaled_jacobian.count,
         outcome.subdomains,
@@ -123,6 +129,9 @@ fn first_lines(job: &Job, outcome: &Outcome) -> String {
         outcome.length_m,
         outcome.length_shrunk_m,
         100.0 * outcome.ilp_gap,
+        outcome.blocks[1],
+        outcome.blocks[0],
+        100.0 * outcome.pattern_gap,
     )
 }
 

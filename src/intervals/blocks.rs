@@ -1,8 +1,9 @@
-//! The sub-domains that could be mapped if opposite sides had equal counts.
+//! The sub-domains that could be mapped if the counts of their sides fitted.
 
 use crate::intervals::Options;
 use crate::intervals::goals::Block;
 use crate::intervals::goals::Goals;
+use crate::intervals::goals::rules;
 use crate::intervals::sides::Walk;
 use crate::noding::arrangement::Arrangement;
 use crate::partition::subdomains::Partition;
@@ -14,7 +15,11 @@ const MUST_TURN_DEG: f64 = 52.0;
 /// A corner may be where the walk turns left by more than this, degrees.
 const MAY_TURN_DEG: f64 = 22.0;
 
-/// All four-sided sub-domains whose opposite sides wish similar counts, in the order of their ids.
+/// What a side more or less than four is worth in misfit, degrees^2: the irregular node in the
+/// middle, priced as mapping does (a quarter of a squared radian).
+const IRREGULAR_DEG2: f64 = 820.0;
+
+/// All sub-domains of three to six sides whose wishes nearly fit, in the order of their ids.
 pub fn blocks(
     goals: &Goals,
     arrangement: &Arrangement,
@@ -27,20 +32,19 @@ pub fn blocks(
         .collect()
 }
 
-/// Opposite wishes differ by at most an interval or by the ratio: to equal others would spoil the
+/// The wishes are off by at most an interval, or by the ratio: to fit others would spoil the
 /// sizes of the neighbours for a patch that is stretched anyway.
 fn is_promising(goals: &Goals, block: &Block, ratio: f64) -> bool {
-    let wish = |side: &Vec<u32>| -> f64 {
-        let curves = side.iter().map(|&curve| curve as usize);
-        curves
-            .map(|curve| goals.goal[curve].max(f64::from(goals.lower[curve])))
-            .sum()
-    };
-    let wishes = block.sides.each_ref().map(wish);
-    (0..2).all(|pair| {
-        let (one, other) = (wishes[pair], wishes[pair + 2]);
-        (one - other).abs() <= 1.0 || one.max(other) <= ratio * one.min(other)
-    })
+    let wish = |curve: usize| goals.goal[curve].max(f64::from(goals.lower[curve]));
+    let wishes = block.totals(wish);
+    let sides = &wishes[..block.sides.len()];
+    let least = sides.iter().copied().fold(f64::INFINITY, f64::min);
+    let enough = if sides.len() == 4 { 0.0 } else { 1.5 };
+    rules(sides.len()).iter().all(|rule| {
+        let signed = wishes.iter().zip(&rule.sign);
+        let off: f64 = signed.map(|(wish, &sign)| wish * f64::from(sign)).sum();
+        off <= f64::max(1.0, (ratio - 1.0) * least)
+    }) && least >= enough
 }
 
 fn block(arrangement: &Arrangement, partition: &Partition, subdomain: u32) -> Option<Block> {
@@ -60,26 +64,39 @@ fn block(arrangement: &Arrangement, partition: &Partition, subdomain: u32) -> Op
     {
         return None;
     }
+    let corners = corners(&walk)?;
+    // A corner within a curve would leave to `boundary` how much of its count each side gets.
+    if !corners.iter().all(|&k| walk.starts_curve[k]) {
+        return None;
+    }
+    let sides = (walk.sides(&corners).into_iter())
+        .map(|side| side.into_iter().map(|(curve, _)| curve).collect())
+        .collect();
+    Some(Block { subdomain, sides })
+}
+
+/// The three to six corners that fit best: the sharpest turns, all that must be among them.
+fn corners(walk: &Walk) -> Option<Vec<usize>> {
     let mut corners = walk.entries(|turn_deg| turn_deg > MAY_TURN_DEG);
     corners.sort_by(|&j, &k| {
         walk.turn_deg(k)
             .total_cmp(&walk.turn_deg(j))
             .then(j.cmp(&k))
     });
-    let fifth_must = (corners.get(4)).is_some_and(|&k| walk.turn_deg(k) > MUST_TURN_DEG);
-    if corners.len() < 4 || fifth_must {
-        return None;
+    let must = (corners.iter())
+        .filter(|&&k| walk.turn_deg(k) > MUST_TURN_DEG)
+        .count();
+    let mut best: Option<(f64, usize)> = None;
+    let mut misfit = 0.0;
+    for (k, &corner) in corners.iter().enumerate().take(6) {
+        let (turn_deg, sides) = (walk.turn_deg(corner), k + 1);
+        misfit += (90.0 - turn_deg).powi(2) - turn_deg.powi(2);
+        let all = misfit + IRREGULAR_DEG2 * sides.abs_diff(4) as f64;
+        if sides >= must.max(3) && best.is_none_or(|(least, _)| all < least) {
+            best = Some((all, sides));
+        }
     }
-    corners.truncate(4);
+    corners.truncate(best?.1);
     corners.sort_unstable();
-    // A corner within a curve would leave to `boundary` how much of its count each side gets.
-    if !corners.iter().all(|&k| walk.starts_curve[k]) {
-        return None;
-    }
-    let mut sides = (walk.sides(&corners).into_iter())
-        .map(|side| side.into_iter().map(|(curve, _)| curve).collect());
-    Some(Block {
-        subdomain,
-        sides: std::array::from_fn(|_| sides.next().expect("four corners, four sides")),
-    })
+    Some(corners)
 }

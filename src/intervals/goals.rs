@@ -14,17 +14,75 @@ pub struct Goals {
     pub upper: Vec<u32>,
     /// Weight of the curve's deviation; 1 for a straight curve that is not shorter than the size.
     pub weight: Vec<f64>,
-    /// Sub-domains with four sides, by id: they can be mapped if opposite sides have equal counts.
+    /// Sub-domains with three to six sides, by id: they can be mapped if their counts fit.
     pub blocks: Vec<Block>,
 }
 
-/// A sub-domain with one walk, four corners and no reflex one.
+/// A sub-domain with one walk, three to six corners and no reflex one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
     /// The sub-domain.
     pub subdomain: SubdomainId,
     /// The curves of each side, in order around; each lies on it as a whole. None occurs twice.
-    pub sides: [Vec<u32>; 4],
+    pub sides: Vec<Vec<u32>>,
+}
+
+impl Block {
+    /// What each side has of `amount`, a number a curve; absent sides have zero.
+    pub fn totals(&self, amount: impl Fn(usize) -> f64) -> [f64; 6] {
+        let mut totals = [0.0; 6];
+        for (total, side) in totals.iter_mut().zip(&self.sides) {
+            *total = side.iter().map(|&curve| amount(curve as usize)).sum();
+        }
+        totals
+    }
+}
+
+/// One inequality of a pattern: `constant + sum over sides s of sign[s] x count of s <= 0`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rule {
+    /// See [`Rule`].
+    pub constant: i8,
+    /// -1, 0 or 1 a side.
+    pub sign: [i8; 6],
+}
+
+impl Rule {
+    /// How far `totals` are from what the rule asks for: at most 0 if they satisfy it.
+    pub fn excess(&self, totals: &[i64; 6]) -> i64 {
+        let sides = totals.iter().zip(&self.sign);
+        i64::from(self.constant) + sides.map(|(n, &sign)| n * i64::from(sign)).sum::<i64>()
+    }
+}
+
+/// What the counts of a block with this many sides must satisfy so that one pattern fits, besides
+/// an even total. Four sides: opposite ones are equal (a grid). Otherwise a star of spokes from a
+/// centre to the sides, `count[i] = spoke[i-1] + spoke[i+1]`, with each spoke at least 1; twice a
+/// spoke is the alternating sum of the counts met in steps of two from it.
+pub fn rules(sides: usize) -> Vec<Rule> {
+    let mut rules = Vec::new();
+    if sides == 4 {
+        for side in 0..4 {
+            let mut sign = [0; 6];
+            (sign[side], sign[(side + 2) % 4]) = (1, -1);
+            rules.push(Rule { constant: 0, sign });
+        }
+        return rules;
+    }
+    let terms = if sides == 5 { 5 } else { 3 };
+    for spoke in 0..sides {
+        let mut sign = [0; 6];
+        for k in 0..terms {
+            sign[(spoke + 2 * k + 1) % sides] = if k % 2 == 0 { -1 } else { 1 };
+        }
+        rules.push(Rule { constant: 2, sign });
+    }
+    rules
+}
+
+/// True if sides 0, 2, 4 must have an even total by themselves, and so the others.
+pub fn has_halves(sides: usize) -> bool {
+    sides == 4 || sides == 6
 }
 
 impl Goals {

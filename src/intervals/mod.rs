@@ -19,8 +19,8 @@
 //! 2. `minima` over `sides`: the least counts that a shape needs, folded into the bounds of its longest curves,
 //!    so that parity stays a minimum-weight T-join and needs no rows of another kind. A fold is
 //!    sufficient, not necessary: it may forbid a split that another share of the side would allow.
-//! 3. `blocks`: the sub-domains with four sides, for which `parity` wishes equal counts on opposite
-//!    sides, because mapped patches are the best ones.
+//! 3. `blocks`: the sub-domains with three to six sides, whose counts `parity` wishes to fit one
+//!    pattern, because mapped patches are the best ones. Corners as mapping chooses them.
 //! 4. Costs are those of [`Goals::cost`]: convex, relative, zero at the goal. `apportion` says what
 //!    one more interval costs on the edge of a curve that can best take it: the curve's weight.
 //!    So the odd interval that parity asks for goes to long edges, never to one below the size if
@@ -56,8 +56,8 @@ pub struct Options {
     /// Largest count over goal, above 1; three more are always allowed, so that short curves are
     /// free to change parity.
     pub upper_ratio: f64,
-    /// A four-sided sub-domain may be a block if opposite wishes differ at most by this ratio (or
-    /// by one interval).
+    /// A sub-domain may be a block if its wishes miss a pattern at most by this ratio of its least
+    /// side (or by one interval).
     pub block_ratio: f64,
 }
 

@@ -104,7 +104,7 @@ impl Options {
                 Method::Looping,
                 Method::Indirect,
             ],
-            good_enough: 0.84,
+            good_enough: 0.8,
         }
     }
 }

@@ -79,7 +79,7 @@ pub(crate) fn lay(sheet: &mut Sheet, contour: &Contour) -> Option<Shape> {
         }
         let shape = lay_plan(sheet, contour, &plan);
         sheet.undo(mark);
-        let worth = shape.mean.min(0.5 + shape.least) - price;
+        let worth = shape.mean().min(0.5 + shape.least) - price;
         if shape.least > 0.0 && best.as_ref().is_none_or(|(most, _)| worth > *most) {
             best = Some((worth, plan));
         }

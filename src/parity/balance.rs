@@ -4,6 +4,7 @@ use crate::intervals::goals::Goals;
 use crate::parity::cuts::Cuts;
 use crate::parity::programme::COST_UNIT;
 use crate::parity::programme::total_units;
+use crate::parity::programme::units;
 
 /// A count for each curve, with its certificate.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -12,7 +13,7 @@ pub struct Balance {
     pub counts: Vec<u32>,
     /// What free rounding costs, parity ignored: nobody can do better.
     pub base: f64,
-    /// What `counts` cost: the optimum, and what equal opposite sides of blocks cost beyond it.
+    /// What `counts` cost: the optimum, and what patterns that fit cost beyond it.
     pub objective: f64,
     /// What the best counts found cost, the wishes of blocks ignored.
     pub optimum: f64,
@@ -20,7 +21,7 @@ pub struct Balance {
     pub bound: f64,
     /// True if `optimum` is `bound`: exact in whole cost units.
     pub proven: bool,
-    /// What was done for the sake of equal opposite sides.
+    /// What was done for the sake of patterns.
     pub structure: Structure,
     /// Share of odd counts: about a half, unless something rounds to even.
     pub odd_share: f64,
@@ -40,17 +41,29 @@ pub struct Balance {
     pub cuts: Cuts,
 }
 
-/// Blocks whose opposite sides were made equal; not part of what is proven.
+/// What was done so that the counts of blocks fit patterns, with a bound of its own.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Structure {
-    /// Blocks, and how many have equal opposite sides.
+    /// Blocks: sub-domains that a pattern could mesh.
     pub blocks: u32,
-    /// See `blocks`.
+    /// How many of them could be mapped with the best counts for parity alone.
+    pub mapped_before: u32,
+    /// How many of them can be mapped.
     pub mapped: u32,
-    /// Price of the differences that are left.
+    /// Price of a pattern's excess of one.
+    pub worth: f64,
+    /// Price of all excess that is left.
     pub price: f64,
     /// What any even counts cost at least, with that price; 0 if nothing was wished for.
     pub bound: f64,
+    /// T-joins that the bound took.
+    pub rounds: u32,
+    /// Neighbourhoods that HiGHS found better counts for.
+    pub improved: u32,
+    /// The proof, first part: a multiplier for each rule of each block, cost units.
+    pub multipliers: Vec<i64>,
+    /// The proof, second part: odd sets of the programme that the multipliers tilt.
+    pub cuts: Cuts,
 }
 
 impl Balance {
@@ -63,10 +76,22 @@ impl Balance {
         (self.optimum - self.bound) / (self.optimum - self.base)
     }
 
+    /// How far cost and price together are from their bound, in the same way.
+    pub fn structure_gap(&self) -> f64 {
+        let total = self.objective + self.structure.price;
+        if self.structure.bound == 0.0 || total <= self.base {
+            return 0.0;
+        }
+        (total - self.structure.bound) / (total - self.base)
+    }
+
     /// The balance with these counts, and what they cost.
     pub(crate) fn with_counts(mut self, goals: &Goals, counts: Vec<u32>) -> Balance {
         self.counts = counts;
         self.objective = total_units(goals, &self.counts) as f64 * COST_UNIT;
+        // Only if the matching ran into its limit can they be better than what it found.
+        self.optimum = self.optimum.min(self.objective);
+        self.proven = units(self.optimum) == units(self.bound);
         let odd = self.counts.iter().filter(|count| *count % 2 == 1).count();
         self.odd_share = odd as f64 / self.counts.len().max(1) as f64;
         self

@@ -2,12 +2,13 @@
 
 use crate::intervals::goals::Goals;
 use crate::parity::balance::Balance;
-use crate::parity::error::Error;
+use crate::parity::draft::Draft;
+use crate::parity::draft::Places;
 use crate::parity::programme::Programme;
 use crate::parity::programme::cost_units;
-use crate::parity::programme::free_rounding;
-use crate::parity::programme::total_units;
 use crate::parity::programme::units;
+use crate::parity::structure;
+use crate::parity::tilts::Rules;
 use crate::partition::subdomains::OUTSIDE;
 use crate::partition::subdomains::Partition;
 
@@ -34,7 +35,8 @@ pub fn check(partition: &Partition, goals: &Goals, balance: &Balance) -> Result<
     if let Some(id) = total.iter().position(|total| total % 2 == 1) {
         return Err(format!("sub-domain {id}: {} intervals", total[id]));
     }
-    let bound = bound_units(partition, goals, balance)?;
+    let parity = Programme::new(partition, goals, None).map_err(|it| it.to_string())?;
+    let bound = parity.base + balance.cuts.proven(&parity.graph)?;
     let [said, bound_said, optimum] =
         [balance.objective, balance.bound, balance.optimum].map(units);
     if said != objective || bound_said != bound {
@@ -48,46 +50,23 @@ pub fn check(partition: &Partition, goals: &Goals, balance: &Balance) -> Result<
             balance.proven
         ));
     }
-    Ok(())
+    structure(partition, goals, balance)
 }
 
-/// The bound that the certificate proves, in whole cost units.
-fn bound_units(partition: &Partition, goals: &Goals, balance: &Balance) -> Result<i64, String> {
-    let said = |error: Error| error.to_string();
-    let near = free_rounding(goals).map_err(said)?;
-    let programme = Programme::new(partition, goals, &near, 0).map_err(said)?;
-    let cuts = &balance.cuts;
-    let sets = cuts.parent.len();
-    if cuts.set_of.len() != programme.graph.odd.len() || cuts.value2.len() != sets {
-        return Err("the certificate has arrays of other lengths".into());
+/// What is said of cost and price of the blocks together.
+fn structure(partition: &Partition, goals: &Goals, balance: &Balance) -> Result<(), String> {
+    let made = &balance.structure;
+    if made.multipliers.is_empty() {
+        return Ok(());
     }
-    let mut odd = vec![false; sets];
-    for (node, &set) in cuts
-        .set_of
-        .iter()
-        .enumerate()
-        .filter(|(_, set)| **set != u32::MAX)
-    {
-        let set = (odd.get_mut(set as usize)).ok_or("a node in a set that is not there")?;
-        *set ^= programme.graph.odd[node];
-    }
-    for set in (0..sets).rev() {
-        let parent = cuts.parent[set];
-        if !odd[set] || cuts.value2[set] <= 0 || (parent != u32::MAX && parent as usize >= set) {
-            return Err(format!("set {set} of the certificate proves nothing"));
-        }
-        if parent != u32::MAX {
-            odd[parent as usize] ^= true;
-        }
-    }
-    match programme
-        .graph
-        .edges
-        .iter()
-        .find(|edge| cuts.slack2(edge) < 0)
-    {
-        Some(edge) => Err(format!("curve {} pays more than it costs", edge.label)),
-        // Rounded up: costs are whole.
-        None => Ok(total_units(goals, &near) + (cuts.bound2() + 1) / 2),
+    let worth = units(made.worth);
+    let (rules, places) = (Rules::of(goals), Places::of(partition, goals));
+    let draft = Draft::new(goals, &rules, &places, worth, balance.counts.clone());
+    let bound = structure::bound_units(partition, goals, worth, made)?;
+    let found = (draft.mapped(), draft.price(), bound);
+    let said = (made.mapped, units(made.price), units(made.bound));
+    match found == said && bound <= draft.total() {
+        true => Ok(()),
+        false => Err(format!("structure: {said:?} said, {found:?} found")),
     }
 }

@@ -8,6 +8,7 @@
 use crate::parity::flood::Flood;
 use crate::parity::flood::NONE;
 use crate::parity::graph::Edge;
+use crate::parity::graph::Graph;
 use crate::parity::graph::OUTSIDE;
 
 /// A laminar family of odd sets. 16 bytes a set, 4 a node: sets are stored as a forest, a node
@@ -90,5 +91,32 @@ impl Cuts {
         let mut slack2 = 2 * edge.weight;
         self.crossed(edge, |set| slack2 -= self.value2[set as usize]);
         slack2
+    }
+
+    /// The bound that the family proves for `graph`, whole units: recomputed, nothing is trusted.
+    pub fn proven(&self, graph: &Graph) -> Result<i64, String> {
+        let sets = self.parent.len();
+        if self.set_of.len() != graph.odd.len() || self.value2.len() != sets {
+            return Err("the certificate has arrays of other lengths".into());
+        }
+        let mut odd = vec![false; sets];
+        for (node, &set) in (self.set_of.iter().enumerate()).filter(|(_, set)| **set != NONE) {
+            let set = (odd.get_mut(set as usize)).ok_or("a node in a set that is not there")?;
+            *set ^= graph.odd[node];
+        }
+        for set in (0..sets).rev() {
+            let parent = self.parent[set];
+            if !odd[set] || self.value2[set] <= 0 || (parent != NONE && parent as usize >= set) {
+                return Err(format!("set {set} of the certificate proves nothing"));
+            }
+            if parent != NONE {
+                odd[parent as usize] ^= true;
+            }
+        }
+        match graph.edges.iter().find(|edge| self.slack2(edge) < 0) {
+            Some(edge) => Err(format!("curve {} pays more than it costs", edge.label)),
+            // Rounded up: costs are whole.
+            None => Ok((self.bound2() + 1) / 2),
+        }
     }
 }

@@ -9,10 +9,10 @@ pub enum Error {
     /// A group of neighbouring sub-domains whose total is odd whatever is chosen: all curves
     /// between them and the rest of the city have fixed counts.
     Infeasible {
-        /// One of them.
-        subdomain: SubdomainId,
-        /// How many there are.
-        members: u32,
+        /// They, sorted.
+        subdomains: Vec<SubdomainId>,
+        /// The curves around them all, whose counts are fixed with an odd sum.
+        fixed: Vec<u32>,
     },
     /// No count satisfies a curve's bounds.
     Bounds {
@@ -28,11 +28,13 @@ pub enum Error {
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Error::Infeasible { subdomain, members } => write!(
+            Error::Infeasible { subdomains, fixed } => write!(
                 f,
-                "sub-domain {subdomain} and the {} connected to it cannot all be even: the curves \
-                 around them have fixed counts with an odd sum; free one of those curves",
-                members - 1
+                "{} sub-domains (the first is {}) cannot all be even: the {} curves around them \
+                 have fixed counts with an odd sum; free one of those curves",
+                subdomains.len(),
+                subdomains[0],
+                fixed.len()
             ),
             Error::Bounds {
                 curve,

@@ -90,32 +90,33 @@ impl Graph {
     }
 
     /// A component without a way to the outside and with an odd number of odd nodes, which no
-    /// choice of edges can make even: (its least node, how many of its nodes are below `counted`).
-    pub fn hopeless(&self, counted: u32) -> Option<(u32, u32)> {
+    /// choice of edges can make even: its nodes, sorted.
+    pub fn hopeless(&self) -> Option<Vec<u32>> {
         let n = self.odd.len();
         let mut seen = vec![false; n];
-        let mut stack = Vec::new();
+        let mut reached = Vec::new();
         for seed in 0..n as u32 {
-            if seen[seed as usize] {
+            if std::mem::replace(&mut seen[seed as usize], true) {
                 continue;
             }
-            let (mut size, mut odd, mut open) = (0, false, false);
-            seen[seed as usize] = true;
-            stack.push(seed);
-            while let Some(node) = stack.pop() {
-                size += u32::from(node < counted);
+            let (mut odd, mut open, mut next) = (false, false, 0);
+            reached.clear();
+            reached.push(seed);
+            while next < reached.len() {
+                let node = reached[next];
+                next += 1;
                 odd ^= self.odd[node as usize];
-                for next in self.neighbours(node) {
-                    if next.node == OUTSIDE {
+                for near in self.neighbours(node) {
+                    if near.node == OUTSIDE {
                         open = true;
-                    } else if !seen[next.node as usize] {
-                        seen[next.node as usize] = true;
-                        stack.push(next.node);
+                    } else if !std::mem::replace(&mut seen[near.node as usize], true) {
+                        reached.push(near.node);
                     }
                 }
             }
             if odd && !open {
-                return Some((seed, size));
+                reached.sort_unstable();
+                return Some(reached);
             }
         }
         None

@@ -42,12 +42,7 @@
 //!    if a gap is left and its optimum is not whole. Its choice is taken if it is even and no dearer. Without the
 //!    rows HiGHS has no chance: the plain form does not see parity (at 10 000 sub-domains it finds
 //!    nothing in two minutes); with rows found in rounds it stalls a few thousandths short.
-//!
-//! 6. `structure`: blocks (sub-domains with four sides) can be mapped if opposite sides have equal
-//!    counts, and each unit of difference has a price (`Options::worth`). Exact as far as parity
-//!    goes: a block becomes two nodes, one for each pair of opposite sides, and an edge of that
-//!    price between them; the same T-join then knows the wish, and its duals bound cost and price
-//!    together. The rest is heuristic: rows of curves change by one or two where that pays.
+//! 6. `structure`: cost and the patterns' price together; see below.
 //!
 //! If the limit of work ends step 2 early, its radii are still feasible duals: the bound stays
 //! valid, a spanning forest over the edges of least slack gives the choice, the gap is reported.
@@ -55,13 +50,50 @@
 //! Costs are rounded to whole millionths first ([`programme::COST_UNIT`]); the programme is solved
 //! exactly in those.
 //!
+//! # Patterns
+//! A *block* is a sub-domain with three to six sides, each of one curve or several. One pattern can
+//! mesh it (a grid, or a star with one irregular node) if the totals N of its sides satisfy rules
+//! `a_r N + b_r <= 0` ([`rules`](crate::intervals::goals::rules)), and, with four or six sides, if
+//! every other side has an even total. With a price `p` (`Options::worth`) for each unit of the
+//! largest excess, the programme becomes
+//!
+//! ```text
+//! minimise  sum of cost_c(n_c) + p sum over blocks f of
+//!                       max(0, a_r N_f + b_r over rules r of f, [every other side of f odd])
+//! ```
+//!
+//! which is no T-join any more, but nearly:
+//! - `tilts`, exact: for any multipliers u_r >= 0 that sum to at most p in each block, the price of
+//!   f is at least `sum u_r (a_r N_f + b_r) + (p - sum u_r) [odd]`. The first part only tilts
+//!   the costs of curves, which stay convex; the second is an edge between the two halves that f is
+//!   split into. So a T-join on the split graph bounds cost *and* price of all counts, and
+//!   certifies it in whole numbers: multipliers and cuts are stored, `check` recomputes the bound.
+//! - `solver_rules`: the first multipliers are the duals of the linear programme with a row a
+//!   rule, counts free to be fractions, solved by HiGHS (interior point, no crossover).
+//! - `structure`, heuristic in how fast, exact in what it claims: the multipliers climb along averaged
+//!   subgradients, with the stride of Polyak. The maximum is the linear programme with all
+//!   odd-cut rows of all roundings, which nobody could write down.
+//! - `draft`, heuristic: each T-join's counts, mended by moves of two along rows of curves, are
+//!   candidates. Near the top the T-join obeys nearly all rules by itself, so little is to mend.
+//! - `neighbourhoods`: at the places where the best counts exceed what the bound accounts for, HiGHS
+//!   solves some forty sub-domains exactly, all others held.
+//!
+//! What is proven of `counts` is [`Balance::structure_gap`].
+//!
 //! # Cost
-//! Near-linear in curves on real cities; about 200 bytes a curve at the peak. Three matchings with
-//! blocks, one without; synthetic cities of 10 thousand sub-domains take 0.05 s, of a million 31 s.
+//! Near-linear in curves on real cities; about 200 bytes a curve at the peak. Parity alone is one
+//! matching; patterns are some sixty more on the same graph, and the linear programme.
+//! `benches/README.md` has the measurements.
+//!
+//! # Sources
+//! Edmonds and Johnson (1973) for T-joins; Higgott and Gidney (2023) for sparse blossom; Held and Karp
+//! (1971) and Polyak (1969) for multipliers that climb; Tarini (2021) and Takayama and others
+//! (2014) for the patterns. Interval assignment as bi-directed flow (Mitchell 2013; Heistermann,
+//! Warnett, Bommes 2023) has the same rules as equations of chords; the price here is their excess,
+//! so that what is left after the relaxation stays a T-join.
 //!
 //! # Not here
-//! Minima by shape are bounds already (`intervals`). Wishes of sub-domains with three, five or six
-//! sides; an exact optimum of cost and price together.
+//! Minima by shape are bounds already (`intervals`).
 
 use crate::intervals::goals::Goals;
 use crate::parity::balance::Balance;
@@ -71,21 +103,24 @@ use crate::parity::graph::Graph;
 use crate::parity::matching::Matching;
 use crate::parity::programme::COST_UNIT;
 use crate::parity::programme::Programme;
-use crate::parity::programme::free_rounding;
 use crate::parity::programme::total_units;
 use crate::partition::subdomains::Partition;
 
 pub mod balance;
 pub mod check;
 pub mod cuts;
+mod draft;
 pub mod error;
 mod flood;
 pub mod graph;
 mod join;
 mod matching;
+mod neighbourhoods;
 pub mod programme;
 mod solver;
+mod solver_rules;
 mod structure;
+mod tilts;
 
 /// Limits of work: never seconds, so that two runs are the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,18 +131,21 @@ pub struct Options {
     pub nodes_max: i32,
     /// Rows up to which HiGHS is asked; above, the certified matching stands alone.
     pub rows_max: u32,
-    /// What it is worth that opposite sides of a block are equal, or less unequal by one; in the
-    /// unit of costs, the relative deviation of one curve. 0: parity alone.
+    /// Price of a pattern's excess of one, in the unit of costs, the relative deviation of one
+    /// curve. 0: parity alone.
     pub worth: f64,
-    /// Rounds of moves for the sake of equal sides; most pay in the first three.
+    /// Rounds of moves for the sake of patterns; most pay in the first three.
     pub rounds_max: u32,
+    /// T-joins that the bound of cost and price may take.
+    pub climb_max: u32,
+    /// Neighbourhoods that HiGHS may improve.
+    pub neighbourhoods_max: u32,
 }
 
 /// Chooses the number of intervals of every curve.
 pub fn balance(partition: &Partition, goals: &Goals, options: &Options) -> Result<Balance, Error> {
-    let near = free_rounding(goals)?;
-    let base = total_units(goals, &near);
-    let programme = Programme::new(partition, goals, &near, 0)?;
+    let programme = Programme::new(partition, goals, None)?;
+    let base = programme.base;
     let graph = &programme.graph;
     let join = minimum_join(graph, options.events_max);
     let gap2 = 2 * join.weight(graph) - join.cuts.bound2();
@@ -136,8 +174,7 @@ pub fn balance(partition: &Partition, goals: &Goals, options: &Options) -> Resul
     balance.proven = optimum == bound;
     balance.odd_subdomains = graph.odd.iter().filter(|odd| **odd).count() as u32;
     balance.cuts = join.cuts;
-    let (structure, counts) =
-        structure::prefer_equal_sides(partition, goals, &near, even, options)?;
+    let (structure, counts) = structure::fit_patterns(partition, goals, base, even, options)?;
     balance.structure = structure;
     Ok(balance.with_counts(goals, counts))
 }

@@ -1,10 +1,12 @@
 //! Goals -> free rounding and the dual graph: what remains to be decided is parity.
 
 use crate::intervals::goals::Goals;
+use crate::intervals::goals::has_halves;
 use crate::parity::error::Error;
 use crate::parity::graph::Edge;
 use crate::parity::graph::Graph;
 use crate::parity::graph::OUTSIDE;
+use crate::parity::tilts::Tilts;
 use crate::partition::subdomains;
 use crate::partition::subdomains::Partition;
 use crate::partition::subdomains::SubdomainId;
@@ -18,6 +20,8 @@ pub struct Programme {
     pub rounded: Vec<u32>,
     /// The other one, of other parity; equal to `rounded` if the count is fixed.
     pub other: Vec<u32>,
+    /// What `rounded` costs, with the tilt and its constant, units.
+    pub base: i64,
     /// Odd nodes of `rounded`, and what changing each curve costs; labels are curves, from
     /// `rounded.len()` on blocks.
     pub graph: Graph,
@@ -39,81 +43,97 @@ pub fn total_units(goals: &Goals, counts: &[u32]) -> i64 {
     curves.map(|(curve, &n)| cost_units(goals, curve, n)).sum()
 }
 
-/// The cheapest count of each curve by itself.
-pub fn free_rounding(goals: &Goals) -> Result<Vec<u32>, Error> {
+/// Refuses bounds that no count satisfies.
+pub fn expect_bounds(goals: &Goals) -> Result<(), Error> {
     let conflict = |&curve: &usize| goals.lower[curve].max(1) > goals.upper[curve];
-    if let Some(id) = (0..goals.goal.len()).find(conflict) {
-        let (curve, lower, upper) = (id as u32, goals.lower[id], goals.upper[id]);
-        return Err(Error::Bounds {
-            curve,
-            lower,
-            upper,
-        });
+    match (0..goals.goal.len()).find(conflict) {
+        None => Ok(()),
+        Some(id) => Err(Error::Bounds {
+            curve: id as u32,
+            lower: goals.lower[id],
+            upper: goals.upper[id],
+        }),
     }
-    Ok((0..goals.goal.len())
-        .map(|curve| cheapest(goals, curve))
-        .collect())
+}
+
+/// The best count of each parity: (count, cost with tilt), the cheaper first; no second one if the
+/// count is fixed.
+fn choice(goals: &Goals, curve: usize, tilt: i64) -> ((u32, i64), Option<(u32, i64)>) {
+    let (lower, upper) = (goals.lower[curve], goals.upper[curve]);
+    // Costs are convex with their minimum at the goal: the best of each parity lies within two of
+    // it. With a tilt it may lie anywhere, and rounding to units may hide it from a short walk.
+    let range = match tilt {
+        0 => {
+            let at = (goals.goal[curve] as u32).clamp(lower, upper);
+            at.saturating_sub(2).max(lower)..=at.saturating_add(3).min(upper)
+        }
+        _ => lower..=upper,
+    };
+    let mut best: [Option<(i64, u32)>; 2] = [None, None];
+    for n in range {
+        let cost = cost_units(goals, curve, n) + tilt * i64::from(n);
+        let slot = &mut best[(n % 2) as usize];
+        if slot.is_none_or(|least| (cost, n) < least) {
+            *slot = Some((cost, n));
+        }
+    }
+    let named = |(cost, n): (i64, u32)| (n, cost);
+    match best {
+        [Some(even), Some(odd)] => (named(even.min(odd)), Some(named(even.max(odd)))),
+        [one, another] => (
+            named(one.or(another).expect("bounds were compared before")),
+            None,
+        ),
+    }
 }
 
 impl Programme {
-    /// The choice between the counts `near` and, for each curve, the cheaper of the two next to
-    /// it. For the [`free_rounding`] this loses nothing as to parity: costs are convex.
-    ///
-    /// `worth` is the price of a block whose opposite sides differ in parity, in units; at 0 blocks
-    /// are like any other sub-domains.
+    /// The choice between the best counts of either parity, which loses nothing as to parity. With
+    /// `tilts`, blocks are halved where their sides ask for it; without, they are like any other
+    /// sub-domains.
     pub fn new(
         partition: &Partition,
         goals: &Goals,
-        near: &[u32],
-        worth: i64,
+        tilts: Option<&Tilts>,
     ) -> Result<Programme, Error> {
-        let halves = Halves::of(partition, goals, worth > 0);
+        expect_bounds(goals)?;
+        let halves = Halves::of(partition, goals, tilts);
         let mut odd = vec![false; halves.nodes];
         let mut edges = Vec::new();
         let (mut rounded, mut other) = (Vec::new(), Vec::new());
-        for (id, &count) in near.iter().enumerate() {
-            let next = cheapest_neighbour(goals, id, count);
-            let costs = [count, next].map(|n| cost_units(goals, id, n));
-            let swap = costs[1] < costs[0];
-            let (count, next) = if swap { (next, count) } else { (count, next) };
-            rounded.push(count);
-            other.push(next);
+        let mut base = tilts.map_or(0, |tilts| tilts.constant);
+        for (id, &[a, b]) in halves.ends.iter().enumerate() {
+            let tilt = tilts.map_or(0, |tilts| tilts.slope[id]);
+            let (mine, next) = choice(goals, id, tilt);
+            base += mine.1;
+            rounded.push(mine.0);
+            other.push(next.map_or(mine.0, |next| next.0));
             // A free line counts twice in its sub-domain and never matters.
-            let [a, b] = halves.ends[id];
             if a == b {
                 continue;
             }
             for node in [a, b] {
                 if node != OUTSIDE {
-                    odd[node as usize] ^= count % 2 == 1;
+                    odd[node as usize] ^= mine.0 % 2 == 1;
                 }
             }
-            if next != count {
-                let weight = costs[0].abs_diff(costs[1]) as i64;
-                let label = id as u32;
+            if let Some(next) = next {
                 edges.push(Edge {
                     a,
                     b,
-                    weight,
-                    label,
+                    weight: next.1 - mine.1,
+                    label: id as u32,
                 });
             }
         }
-        for (k, &[a, b]) in halves.bridges.iter().enumerate() {
-            let label = (near.len() + k) as u32;
-            edges.push(Edge {
-                a,
-                b,
-                weight: worth,
-                label,
-            });
-        }
+        edges.extend(&halves.bridges);
         let graph = Graph::new(odd, edges);
-        match graph.hopeless(partition.subdomains.len() as u32) {
-            Some((subdomain, members)) => Err(Error::Infeasible { subdomain, members }),
+        match graph.hopeless() {
+            Some(nodes) => Err(infeasible(partition, nodes)),
             None => Ok(Programme {
                 rounded,
                 other,
+                base,
                 graph,
             }),
         }
@@ -133,21 +153,34 @@ impl Programme {
     }
 }
 
-/// The nodes of the graph: a sub-domain is one, a block two, for its two pairs of opposite sides.
+/// The error of a group of nodes that cannot be even.
+fn infeasible(partition: &Partition, nodes: Vec<u32>) -> Error {
+    let mut subdomains = nodes;
+    // Beyond come the second halves of blocks.
+    subdomains.retain(|&node| (node as usize) < partition.subdomains.len());
+    let within = |side: u32| subdomains.binary_search(&side).is_ok();
+    let around = (partition.curves.iter().enumerate())
+        .filter(|(_, curve)| within(curve.left) != within(curve.right));
+    let fixed = around.map(|(id, _)| id as u32).collect();
+    Error::Infeasible { subdomains, fixed }
+}
+
+/// The nodes of the graph: a sub-domain is one, a block of four or six sides two, for its sides of
+/// even and odd number.
 ///
-/// The halves of a block are joined by a bridge. Both even: opposite sides agree in parity. Both
-/// odd: the bridge is taken and its price paid. One odd: the block is odd, which cannot be. So the
-/// wish for equal opposite sides is, as far as parity sees it, an edge of the same T-join.
+/// The halves of a block are joined by a bridge. Both even: the pattern is possible. Both odd: the
+/// bridge is taken and its price paid. One odd: the block is odd, which cannot be. So the wish for
+/// a pattern is, as far as parity sees it, an edge of the same T-join.
 struct Halves {
     nodes: usize,
     /// The nodes on the two sides of each curve.
     ends: Vec<[u32; 2]>,
-    /// The two halves of each block.
-    bridges: Vec<[u32; 2]>,
+    /// Between the two halves of each block that has them.
+    bridges: Vec<Edge>,
 }
 
 impl Halves {
-    fn of(partition: &Partition, goals: &Goals, split: bool) -> Halves {
+    fn of(partition: &Partition, goals: &Goals, tilts: Option<&Tilts>) -> Halves {
         let subdomains = partition.subdomains.len();
         let mut halves = Halves {
             nodes: subdomains,
@@ -156,21 +189,29 @@ impl Halves {
                 .collect(),
             bridges: Vec::new(),
         };
-        if !split {
+        let Some(tilts) = tilts else {
             return halves;
-        }
+        };
         for (k, block) in goals.blocks.iter().enumerate() {
-            let second = (subdomains + k) as u32;
-            for &curve in block.sides[1].iter().chain(&block.sides[3]) {
+            if !has_halves(block.sides.len()) {
+                continue;
+            }
+            let second = halves.nodes as u32;
+            halves.nodes += 1;
+            for &curve in block.sides.iter().skip(1).step_by(2).flatten() {
                 for end in &mut halves.ends[curve as usize] {
                     if *end == block.subdomain {
                         *end = second;
                     }
                 }
             }
-            halves.bridges.push([block.subdomain, second]);
+            halves.bridges.push(Edge {
+                a: block.subdomain,
+                b: second,
+                weight: tilts.bridge[k],
+                label: (partition.curves.len() + k) as u32,
+            });
         }
-        halves.nodes += halves.bridges.len();
         halves
     }
 }
@@ -180,32 +221,5 @@ fn node_of(side: SubdomainId) -> u32 {
         OUTSIDE
     } else {
         side
-    }
-}
-
-/// The cheapest count within bounds; the lower one of two. Costs are convex with their minimum at
-/// the goal, so only its two neighbours count.
-fn cheapest(goals: &Goals, curve: usize) -> u32 {
-    let (lower, upper) = (goals.lower[curve], goals.upper[curve]);
-    let below = (goals.goal[curve].floor() as u32).clamp(lower, upper);
-    let above = (below + 1).min(upper);
-    match cost_units(goals, curve, above) < cost_units(goals, curve, below) {
-        true => above,
-        false => below,
-    }
-}
-
-/// The cheaper of the counts next to `count`; `count` itself if it is fixed.
-fn cheapest_neighbour(goals: &Goals, curve: usize, count: u32) -> u32 {
-    let less = (count > goals.lower[curve]).then(|| count - 1);
-    let more = (count < goals.upper[curve]).then_some(count + 1);
-    match (less, more) {
-        (Some(less), Some(more)) => {
-            match cost_units(goals, curve, less) <= cost_units(goals, curve, more) {
-                true => less,
-                false => more,
-            }
-        }
-        (one, another) => one.or(another).unwrap_or(count),
     }
 }

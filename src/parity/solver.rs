@@ -1,4 +1,4 @@
-//! The programme as HiGHS sees it. The only file that names it.
+//! The programme as HiGHS sees it: the only file that names HiGHS, with `solver_rules`.
 
 use crate::parity::cuts::Cuts;
 use crate::parity::graph::Graph;
@@ -98,7 +98,7 @@ fn run(
 }
 
 /// All that could make two runs differ, said explicitly. Limits count work, never seconds.
-fn set_options(model: &mut Model, nodes_max: i32) {
+pub fn set_options(model: &mut Model, nodes_max: i32) {
     model.make_quiet();
     model.set_option("threads", 1);
     model.set_option("parallel", "off");

@@ -1,248 +1,248 @@
-//! Blocks whose opposite sides should have equal counts: how far counts are from it, and moves.
+//! Blocks whose counts should fit a pattern: cost and price together, with a bound of their own.
 //!
-//! A block costs `worth` times the larger difference of its two pairs of opposite sides. A move
-//! changes a row of curves by the same amount: from a block across its opposite side into the next
-//! one and so on, as a sheet of quads would, as long as that pays.
+//! Lagrangian relaxation: multipliers make the rules of the patterns a part of the costs (`tilts`),
+//! a T-join solves what is left exactly, and bounds cost and price of any counts. The multipliers
+//! are the duals of a linear programme, then climb: in each round towards the rules that the
+//! T-join's counts break. Its counts, mended by moves of two, are candidates; the best of them is
+//! improved neighbourhood by neighbourhood by HiGHS.
 
 use crate::intervals::goals::Goals;
 use crate::parity::Options;
 use crate::parity::balance::Structure;
+use crate::parity::cuts::Cuts;
+use crate::parity::draft::Draft;
+use crate::parity::draft::Places;
+use crate::parity::draft::halves_are_odd;
 use crate::parity::error::Error;
 use crate::parity::minimum_join;
+use crate::parity::neighbourhoods;
 use crate::parity::programme::COST_UNIT;
 use crate::parity::programme::Programme;
-use crate::parity::programme::cost_units;
-use crate::parity::programme::total_units;
 use crate::parity::programme::units;
+use crate::parity::solver_rules;
+use crate::parity::tilts::Rules;
+use crate::parity::tilts::Tilts;
 use crate::partition::subdomains::Partition;
 
-/// Longest row of curves that one move changes.
-const ROW_MAX: usize = 60;
+/// The climb ends when so many rounds in a row have not raised the bound at the least step.
+const PATIENCE: u32 = 4;
 
-/// No block.
-const NONE: u32 = u32::MAX;
+/// First step, of what the best known counts suggest; halved whenever patience ends.
+const FIRST_STEP: f64 = 1.0;
+
+/// Step at which the climb ends.
+const LAST_STEP: f64 = 0.02;
+
+/// Rounds of moves that mend the counts of one round of the climb.
+const MEND_ROUNDS: u32 = 3;
+
+/// Gap below which nothing is left to improve that a mesh would show.
+const GAP_ENOUGH: f64 = 5e-4;
+
+/// What the best multipliers prove.
+struct Proof {
+    bound: i64,
+    multipliers: Vec<i64>,
+    cuts: Cuts,
+}
 
 /// The counts that are best with the wishes of blocks, as far as this finds them, starting from the
-/// free rounding `near` and from the counts `even` that are best for parity alone.
-///
-/// Twice the halves of blocks become nodes of their own (`programme`), and a T-join chooses
-/// parities: once about the free rounding, whose certificate bounds all counts, once about a
-/// rounding that moves have made fit the blocks. Then moves of two, which leave parities alone.
-pub fn prefer_equal_sides(
+/// counts `even` that are best for parity alone; `free` is what free rounding costs, units.
+pub fn fit_patterns(
     partition: &Partition,
     goals: &Goals,
-    near: &[u32],
+    free: i64,
     even: Vec<u32>,
     options: &Options,
 ) -> Result<(Structure, Vec<u32>), Error> {
     let worth = units(options.worth);
-    let mut best = Draft::new(partition, goals, even, worth);
-    let mut bound = 0;
-    if worth > 0 && !goals.blocks.is_empty() {
-        let mut wished = Draft::new(partition, goals, near.to_vec(), worth);
-        wished.descend(1, options.rounds_max);
-        let plain = total_units(goals, near);
-        for about in [near, &wished.counts] {
-            let programme = Programme::new(partition, goals, about, worth)?;
-            let join = minimum_join(&programme.graph, options.events_max);
-            if about == near {
-                bound = plain + (join.cuts.bound2() + 1) / 2;
-            }
-            let counts = programme.counts(&join.chosen);
-            let mut draft = Draft::new(partition, goals, counts, worth);
-            draft.descend(2, options.rounds_max);
-            if draft.total() < best.total() {
-                best = draft;
-            }
-        }
-    }
-    let structure = Structure {
+    let (rules, places) = (Rules::of(goals), Places::of(partition, goals));
+    let mut best = Draft::new(goals, &rules, &places, worth, even);
+    let mut made = Structure {
         blocks: goals.blocks.len() as u32,
-        mapped: best.mapped(),
-        price: best.price() as f64 * COST_UNIT,
-        bound: bound as f64 * COST_UNIT,
+        mapped_before: best.mapped(),
+        worth: options.worth,
+        ..Structure::default()
     };
-    Ok((structure, best.counts))
-}
-
-/// Counts in the making, with the differences of all blocks.
-struct Draft<'a> {
-    goals: &'a Goals,
-    worth: i64,
-    /// The blocks on both sides of each curve, with the side of the block that it lies on.
-    places: Vec<[(u32, u8); 2]>,
-    /// For each block, what its first two sides have more than those opposite.
-    excess: Vec<[i64; 2]>,
-    /// The counts.
-    counts: Vec<u32>,
-}
-
-impl<'a> Draft<'a> {
-    /// The state of `counts`.
-    fn new(partition: &Partition, goals: &'a Goals, counts: Vec<u32>, worth: i64) -> Draft<'a> {
-        let mut places = vec![[(NONE, 0); 2]; counts.len()];
-        let mut excess = vec![[0; 2]; goals.blocks.len()];
-        for (id, block) in goals.blocks.iter().enumerate() {
-            for (side, &curve) in sides_of(&block.sides) {
-                let left = partition.curves[curve as usize].left == block.subdomain;
-                places[curve as usize][usize::from(!left)] = (id as u32, side as u8);
-                let count = i64::from(counts[curve as usize]);
-                excess[id][side % 2] += if side < 2 { count } else { -count };
-            }
-        }
-        Draft {
+    if worth > 0 && !goals.blocks.is_empty() {
+        best.descend(options.rounds_max);
+        let mut climb = Climb {
+            partition,
             goals,
+            rules: &rules,
             worth,
-            places,
-            excess,
-            counts,
+            options,
+            best,
+            proof: None,
+            rounds: 0,
+        };
+        climb.run()?;
+        let proof = climb
+            .proof
+            .take()
+            .expect("the first round proves something");
+        best = climb.best;
+        made.rounds = climb.rounds;
+        let left = (best.total() - proof.bound) as f64;
+        if left > GAP_ENOUGH * (best.total() - free) as f64 {
+            made.improved = neighbourhoods::improve(
+                partition,
+                goals,
+                &rules,
+                &mut best,
+                &proof.multipliers,
+                options,
+            );
         }
+        made.bound = proof.bound as f64 * COST_UNIT;
+        made.multipliers = proof.multipliers;
+        made.cuts = proof.cuts;
     }
+    made.mapped = best.mapped();
+    made.price = best.price() as f64 * COST_UNIT;
+    Ok((made, best.counts))
+}
 
-    /// Price of all blocks that cannot be mapped, units.
-    fn price(&self) -> i64 {
-        self.excess
-            .iter()
-            .map(|excess| self.worth * larger(*excess))
-            .sum()
-    }
+/// The multipliers on their way up.
+struct Climb<'a> {
+    partition: &'a Partition,
+    goals: &'a Goals,
+    rules: &'a Rules,
+    worth: i64,
+    options: &'a Options,
+    best: Draft<'a>,
+    proof: Option<Proof>,
+    rounds: u32,
+}
 
-    /// What the counts cost, with the price of blocks, units.
-    fn total(&self) -> i64 {
-        total_units(self.goals, &self.counts) + self.price()
-    }
-
-    /// Number of blocks with equal opposite sides.
-    fn mapped(&self) -> u32 {
-        self.excess
-            .iter()
-            .filter(|excess| **excess == [0, 0])
-            .count() as u32
-    }
-
-    /// Moves by `step` (1, or 2 to keep parities) until none pays, at most `rounds_max` rounds.
-    fn descend(&mut self, step: i64, rounds_max: u32) {
-        for _ in 0..rounds_max {
-            let mut moved = false;
-            for curve in 0..self.counts.len() as u32 {
-                moved |= self.step_alone(curve, step);
-            }
-            for block in 0..self.excess.len() {
-                for pair in 0..2 {
-                    moved |= self.mend(block, pair, step);
-                }
-            }
-            if !moved {
-                return;
-            }
-        }
-    }
-
-    fn step_alone(&mut self, curve: u32, step: i64) -> bool {
-        for by in [step, -step] {
-            if self.gain(curve, by).is_some_and(|change| change < 0) {
-                self.change(curve, by);
-                return true;
-            }
-        }
-        false
-    }
-
-    /// Tries rows from both sides of one pair of a block that differ.
-    fn mend(&mut self, block: usize, pair: usize, step: i64) -> bool {
-        let goals = self.goals;
-        let mut moved = false;
-        for side in [pair, pair + 2] {
-            let excess = self.excess[block][pair];
-            let by = match (excess > 0) == (side == pair) {
-                true => -step,
-                false => step,
-            };
-            for &curve in &goals.blocks[block].sides[side] {
-                if self.excess[block][pair] != 0 {
-                    moved |= self.try_row(curve, block as u32, by);
-                }
-            }
-        }
-        moved
-    }
-
-    /// Changes `curve` and the row behind it, seen from block `from`, as far as is best; puts all
-    /// back if nothing is better than before.
-    fn try_row(&mut self, curve: u32, from: u32, by: i64) -> bool {
-        let (mut curve, mut from) = (curve, from);
-        let mut row: Vec<u32> = Vec::new();
-        let (mut total, mut best, mut best_len) = (0, 0, 0);
-        while row.len() < ROW_MAX {
-            let Some(change) = self.gain(curve, by) else {
+impl Climb<'_> {
+    fn run(&mut self) -> Result<(), Error> {
+        let rows = self.rules.start[self.goals.blocks.len()] as usize;
+        let mut at = match solver_rules::multipliers(self.goals, self.rules, self.worth) {
+            Some(duals) => self.feasible(&duals),
+            None => vec![0.0; rows],
+        };
+        let mut direction = vec![0.0; rows];
+        let (mut step, mut idle) = (FIRST_STEP, 0);
+        while step > LAST_STEP && self.rounds < self.options.climb_max.max(1) {
+            self.rounds += 1;
+            let (bound, raised, slope) = self.look(&at)?;
+            let most = self.best.total();
+            let top = self.proof.as_ref().map_or(bound, |proof| proof.bound);
+            if top >= most {
                 break;
-            };
-            self.change(curve, by);
-            row.push(curve);
-            total += change;
-            if total < best {
-                (best, best_len) = (total, row.len());
             }
-            let Some((next, block)) = self.across(curve, from, by, &row) else {
+            idle = if raised { 0 } else { idle + 1 };
+            if idle >= PATIENCE {
+                (step, idle) = (step / 2.0, 0);
+                let proof = self.proof.as_ref().expect("there was a round before");
+                at = proof.multipliers.iter().map(|&u| u as f64).collect();
+            }
+            // Directions are averaged over rounds: they zigzag between neighbouring T-joins.
+            for (direction, slope) in direction.iter_mut().zip(&slope) {
+                *direction = 0.6 * *direction + 0.4 * slope;
+            }
+            // What cannot go down any more must not shorten the stride of the others.
+            for (direction, _) in (direction.iter_mut().zip(&at)).filter(|it| *it.1 <= 0.0) {
+                *direction = direction.max(0.0);
+            }
+            let length2: f64 = direction.iter().map(|d| d * d).sum();
+            if length2 == 0.0 {
                 break;
-            };
-            (curve, from) = (next, block);
+            }
+            let stride = step * (most - bound).max(1) as f64 / length2;
+            for (at, direction) in at.iter_mut().zip(&direction) {
+                *at += stride * direction;
+            }
+            at = self.feasible(&at);
         }
-        for &curve in &row[best_len..] {
-            self.change(curve, -by);
-        }
-        best_len > 0
+        Ok(())
     }
 
-    /// The best curve opposite `curve` in the block beyond it, which is the one that is not `from`.
-    fn across(&self, curve: u32, from: u32, by: i64, row: &[u32]) -> Option<(u32, u32)> {
-        let beyond = |place: &&(u32, u8)| place.0 != from && place.0 != NONE;
-        let &(block, side) = self.places[curve as usize].iter().find(beyond)?;
-        let opposite = &self.goals.blocks[block as usize].sides[(usize::from(side) + 2) % 4];
-        (opposite.iter())
-            .filter(|next| !row.contains(next))
-            .filter_map(|&next| self.gain(next, by).map(|change| (change, next)))
-            .min()
-            .map(|(_, next)| (next, block))
+    /// One T-join at `at`: its bound, whether that is the best so far, and the way up.
+    fn look(&mut self, at: &[f64]) -> Result<(i64, bool, Vec<f64>), Error> {
+        let multipliers: Vec<i64> = at.iter().map(|&u| u as i64).collect();
+        let tilts = Tilts::of(self.goals, self.rules, &multipliers, self.worth);
+        let programme = Programme::new(self.partition, self.goals, Some(&tilts))?;
+        let join = minimum_join(&programme.graph, self.options.events_max);
+        let bound = programme.base + (join.cuts.bound2() + 1) / 2;
+        let counts = programme.counts(&join.chosen);
+        let mut draft = self.best.with_counts(counts);
+        let slope = self.slope(&draft);
+        draft.descend(MEND_ROUNDS);
+        if draft.total() < self.best.total() {
+            self.best = draft;
+        }
+        let raised = self.proof.as_ref().is_none_or(|proof| bound > proof.bound);
+        if raised {
+            self.proof = Some(Proof {
+                bound,
+                multipliers,
+                cuts: join.cuts,
+            });
+        }
+        Ok((bound, raised, slope))
     }
 
-    /// What a change costs, all blocks considered; `None` if it leaves the bounds.
-    fn gain(&self, curve: u32, by: i64) -> Option<i64> {
-        let id = curve as usize;
-        let old = self.counts[id];
-        let new = u32::try_from(i64::from(old) + by).ok()?;
-        if new < self.goals.lower[id] || new > self.goals.upper[id] {
-            return None;
+    /// How the bound changes with each multiplier: the excess of its rule, less the bridge it saves.
+    fn slope(&self, draft: &Draft) -> Vec<f64> {
+        let mut slope = Vec::with_capacity(self.rules.start.len());
+        for (k, block) in self.goals.blocks.iter().enumerate() {
+            let totals = draft.totals(k);
+            let odd = i64::from(halves_are_odd(block.sides.len(), totals));
+            for rule in self.rules.with_sides(block.sides.len()) {
+                slope.push((rule.excess(totals) - odd) as f64);
+            }
         }
-        let mut change = cost_units(self.goals, id, new) - cost_units(self.goals, id, old);
-        for &(block, side) in self.places[id].iter().filter(|place| place.0 != NONE) {
-            let before = self.excess[block as usize];
-            let after = shifted(before, side, by);
-            change += self.worth * (larger(after) - larger(before));
-        }
-        Some(change)
+        slope
     }
 
-    fn change(&mut self, curve: u32, by: i64) {
-        let id = curve as usize;
-        self.counts[id] = (i64::from(self.counts[id]) + by) as u32;
-        for (block, side) in self.places[id].into_iter().filter(|place| place.0 != NONE) {
-            let excess = &mut self.excess[block as usize];
-            *excess = shifted(*excess, side, by);
+    /// The nearest multipliers that prove something: none below 0, those of a block at most `worth`.
+    fn feasible(&self, at: &[f64]) -> Vec<f64> {
+        let worth = self.worth as f64;
+        let mut near: Vec<f64> = at.iter().map(|u| u.max(0.0)).collect();
+        for block in 0..self.goals.blocks.len() {
+            let of_block = &mut near[self.rules.rows(block)];
+            if of_block.iter().sum::<f64>() > worth {
+                let by = surplus(of_block, worth);
+                of_block.iter_mut().for_each(|u| *u = (*u - by).max(0.0));
+            }
         }
+        near
     }
 }
 
-fn sides_of(sides: &[Vec<u32>; 4]) -> impl Iterator<Item = (usize, &u32)> {
-    (sides.iter().enumerate()).flat_map(|(side, curves)| curves.iter().map(move |it| (side, it)))
+/// What must be taken from each of `values`, none going below 0, so that `most` in all are left.
+fn surplus(values: &[f64], most: f64) -> f64 {
+    let mut down = values.to_vec();
+    down.sort_by(|a, b| b.total_cmp(a));
+    let (mut sum, mut by) = (0.0, 0.0);
+    for (k, value) in down.iter().enumerate() {
+        sum += value;
+        let with = (sum - most) / (k + 1) as f64;
+        if with >= *value {
+            break;
+        }
+        by = with;
+    }
+    by
 }
 
-fn shifted(excess: [i64; 2], side: u8, by: i64) -> [i64; 2] {
-    let mut excess = excess;
-    excess[usize::from(side % 2)] += if side < 2 { by } else { -by };
-    excess
-}
-
-fn larger(excess: [i64; 2]) -> i64 {
-    excess[0].abs().max(excess[1].abs())
+/// The bound that multipliers and cuts prove, units.
+pub fn bound_units(
+    partition: &Partition,
+    goals: &Goals,
+    worth: i64,
+    made: &Structure,
+) -> Result<i64, String> {
+    let rules = Rules::of(goals);
+    if made.multipliers.len() != rules.start[goals.blocks.len()] as usize {
+        return Err("not a multiplier a rule".into());
+    }
+    let tilts = Tilts::of(goals, &rules, &made.multipliers, worth);
+    if made.multipliers.iter().any(|&u| u < 0) || tilts.bridge.iter().any(|&left| left < 0) {
+        return Err("multipliers that prove nothing".into());
+    }
+    let programme = Programme::new(partition, goals, Some(&tilts)).map_err(|it| it.to_string())?;
+    Ok(programme.base + made.cuts.proven(&programme.graph)?)
 }

@@ -3,7 +3,6 @@
 use crate::chunk;
 use crate::export;
 use crate::ingest;
-use crate::parity;
 use crate::partition;
 use std::fmt;
 
@@ -17,7 +16,7 @@ pub enum Error {
     /// The line work encloses nothing, or its rim is torn.
     Partition(partition::error::Error),
     /// No counts make every sub-domain even.
-    Parity(parity::error::Error),
+    Parity(String),
     /// The output cannot be written or read.
     Chunk(chunk::error::Error),
     /// An export cannot be written.
@@ -46,9 +45,8 @@ impl fmt::Display for Error {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Error::Ingest(it) => it.fmt(to),
-            Error::Job(it) => it.fmt(to),
+            Error::Job(it) | Error::Parity(it) => it.fmt(to),
             Error::Partition(it) => it.fmt(to),
-            Error::Parity(it) => it.fmt(to),
             Error::Chunk(it) => it.fmt(to),
             Error::Export(it) => it.fmt(to),
             Error::Write(path, it) => {
@@ -73,12 +71,6 @@ impl From<ingest::error::Error> for Error {
 impl From<partition::error::Error> for Error {
     fn from(it: partition::error::Error) -> Error {
         Error::Partition(it)
-    }
-}
-
-impl From<parity::error::Error> for Error {
-    fn from(it: parity::error::Error) -> Error {
-        Error::Parity(it)
     }
 }
 

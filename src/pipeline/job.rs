@@ -4,6 +4,7 @@ use crate::cleanup::SHORTEST;
 use crate::cleanup::Tolerance;
 use crate::cleanup::rules::Rule;
 use crate::cleanup::rules::SmallLoops;
+use crate::cleanup::steps::Step;
 use crate::ingest::CrsChoice;
 use std::path::PathBuf;
 
@@ -33,8 +34,13 @@ pub struct Job {
     pub tile_m: Option<f64>,
     /// A vertex that turns by more than this is a corner, degrees.
     pub corner_deg: f64,
+    /// Steps of clean-up that are left out, to measure what they are worth.
+    pub without: Vec<Step>,
     /// A sub-domain with more quads than this is cut by seams.
     pub seam_budget_quads: u32,
+    /// What it is worth that the counts of a few-sided sub-domain fit a pattern, in the unit of what
+    /// counts cost; 0 for parity alone.
+    pub match_sides: f64,
     /// Worker threads; 0 for as many as there are cores.
     pub threads: usize,
     /// Replace an existing output.
@@ -52,6 +58,9 @@ pub const CELL_M: f64 = 0.001;
 /// Seam budget unless the job says otherwise: a patch of this size meshes in well under a second
 /// and holds about 2 MB.
 pub const SEAM_BUDGET_QUADS: u32 = 20_000;
+
+/// Worth of a pattern unless the job says otherwise: see the table in `benches/README.md`.
+pub const MATCH_SIDES: f64 = 0.5;
 
 impl Job {
     /// The tolerance where no kind says otherwise: as given, or half the size.
@@ -90,7 +99,9 @@ impl Job {
             "kinds": rules,
             "cell_m": self.cell_m,
             "corner_deg": self.corner_deg,
+            "without": self.without.iter().map(|step| step.name()).collect::<Vec<_>>(),
             "seam_budget_quads": self.seam_budget_quads,
+            "match_sides": self.match_sides,
         })
         .to_string()
     }

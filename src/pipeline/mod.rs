@@ -27,6 +27,7 @@ pub mod outcome;
 mod patches;
 pub mod plan;
 pub mod progress;
+pub mod refusal;
 mod report;
 mod shortest;
 mod tiles;

@@ -33,8 +33,15 @@ pub struct Outcome {
     pub length_dropped_m: f64,
     /// Length of lines that became a node, metres.
     pub length_shrunk_m: f64,
+    /// Sharp angles at nodes of the line work, in the input and after clean-up.
+    pub sharp_angles: [u64; 2],
     /// Gap of the integer programme.
     pub ilp_gap: f64,
+    /// Sub-domains with few sides, how many of them have counts that fit a pattern, and how many
+    /// would if parity were all.
+    pub blocks: [u32; 3],
+    /// Gap of cost and patterns' price together.
+    pub pattern_gap: f64,
     /// Share of odd counts among all curves.
     pub odd_share: f64,
     /// Largest patch over the seam budget.
@@ -59,6 +66,7 @@ impl Outcome {
             *by_kind.entry(finding.what).or_insert(0) += 1;
         }
         let budget = f64::from(job.seam_budget_quads);
+        let fit = &plan.city.balance.structure;
         Outcome {
             stages,
             subdomains: plan.city.partition.subdomains.len(),
@@ -69,11 +77,14 @@ impl Outcome {
             displacement_p99_over_size: plan.city.tally.displacement_p99_over_size,
             length_m: plan.city.tally.length_m,
             length_dropped_m: plan.city.tally.length_dropped_m,
+            sharp_angles: plan.city.tally.sharp_angles,
             length_shrunk_m: (plan.city.dropped.iter())
                 .filter(|it| it.reason == Reason::Shrunk)
                 .map(|it| it.to_m - it.from_m)
                 .sum(),
             ilp_gap: plan.city.balance.gap(),
+            blocks: [fit.blocks, fit.mapped, fit.mapped_before],
+            pattern_gap: plan.city.balance.structure_gap(),
             odd_share: plan.city.balance.odd_share,
             largest_patch_over_budget: verdict.quality.largest_patch.0 as f64 / budget,
             findings: by_kind,

@@ -12,6 +12,7 @@ use crate::domain::finding::Finding;
 use crate::domain::line::Domain;
 use crate::domain::line::Role;
 use crate::domain::size::SizeWish;
+use crate::geometry::point::Xy;
 use crate::ingest;
 use crate::intervals;
 use crate::intervals::goals::Goals;
@@ -24,6 +25,7 @@ use crate::partition::subdomains::Partition;
 use crate::pipeline::error::Error;
 use crate::pipeline::job::Job;
 use crate::pipeline::progress::Stopwatch;
+use crate::pipeline::refusal;
 use crate::pipeline::tiles;
 use crate::seams;
 use crate::spill;
@@ -83,9 +85,12 @@ pub(super) fn plan(
     resume_from: Option<&Path>,
 ) -> Result<Plan, Error> {
     let mut findings = Vec::new();
-    let domain = read(job, watch, &mut findings)?;
+    let (domain, left) = read(job, watch, &mut findings)?;
     let sizes = sizes(job, &domain)?;
-    let cleaning = cleaning(job, &domain)?;
+    let cleaning = cleanup::Options {
+        left,
+        ..cleaning(job, &domain)?
+    };
     let parked = resume_from.and_then(|folder| spill::fetch(folder, &key(job, &domain)));
     let city = match parked {
         Some(city) => city,
@@ -145,7 +150,12 @@ fn city(
     })
 }
 
-fn read(job: &Job, watch: &Stopwatch, findings: &mut Vec<Finding>) -> Result<Domain, Error> {
+/// The line work, and the places that an earlier clean-up had to leave, if there was one.
+fn read(
+    job: &Job,
+    watch: &Stopwatch,
+    findings: &mut Vec<Finding>,
+) -> Result<(Domain, Option<Vec<Xy>>), Error> {
     watch.stage("ingest", 1, |_| {
         let options = ingest::Options {
             cell_m: job.cell_m,
@@ -158,7 +168,7 @@ fn read(job: &Job, watch: &Stopwatch, findings: &mut Vec<Finding>) -> Result<Dom
             read.points_read
         );
         findings.extend(read.findings);
-        Ok((read.domain, note))
+        Ok(((read.domain, read.left), note))
     })
 }
 
@@ -185,7 +195,9 @@ fn cleaning(job: &Job, domain: &Domain) -> Result<cleanup::Options, Error> {
         tolerance: job.tolerance(),
         by_kind,
         min_edge: job.min_edge(),
+        left: None,
         corner_deg: job.corner_deg,
+        without: job.without.clone(),
     })
 }
 
@@ -318,11 +330,22 @@ fn balance(
                 events_max: 1 << 31,
                 nodes_max: 1000,
                 rows_max: 20_000,
-                worth: 0.0,
+                worth: job.match_sides,
                 rounds_max: 20,
+                climb_max: 60,
+                neighbourhoods_max: 20,
             },
-        )?;
-        let note = format!("gap {:.4} %, {} rows", 100.0 * balance.gap(), balance.rows);
+        )
+        .map_err(|it| refusal::explain(it, domain, arrangement, partition))?;
+        let fit = &balance.structure;
+        let note = format!(
+            "gap {:.4} %; {} of {} blocks fit a pattern ({} without the wish), gap {:.2} %",
+            100.0 * balance.gap(),
+            fit.mapped,
+            fit.blocks,
+            fit.mapped_before,
+            100.0 * balance.structure_gap()
+        );
         Ok(((goals, balance), note))
     })
 }

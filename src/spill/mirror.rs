@@ -28,7 +28,7 @@ type CurveRow = (Vec<u32>, Vec<u32>, u32, u32, bool);
 type Stretch = (u32, f64, f64);
 
 /// Rows of word, count, displacement; then the figures.
-type TallyRow = (Vec<(String, u64, f64)>, [f64; 6]);
+type TallyRow = (Vec<(String, u64, f64)>, [f64; 6], [u64; 2]);
 
 /// Word, sentence, feature, place.
 type FindingRow = (String, String, Option<u32>, Option<[f64; 2]>);
@@ -42,7 +42,7 @@ pub(super) struct Plan {
     curves: Vec<CurveRow>,
     subdomains: Vec<(Vec<Vec<u32>>, f64)>,
     goals: (Vec<f64>, Vec<u32>, Vec<u32>, Vec<f64>),
-    blocks: Vec<(u32, [Vec<u32>; 4])>,
+    blocks: Vec<(u32, Vec<Vec<u32>>)>,
     balance: BalanceRow,
     dropped: Vec<(Stretch, u8)>,
     changes: Vec<(String, i32, i32, f64)>,
@@ -51,10 +51,22 @@ pub(super) struct Plan {
 }
 
 #[derive(Encode, Decode)]
+struct StructureRow {
+    /// Blocks, mapped before, mapped; rounds, improved.
+    numbers: [u32; 5],
+    /// Worth, price, bound.
+    costs: [f64; 3],
+    multipliers: Vec<i64>,
+    parent: Vec<u32>,
+    value2: Vec<i64>,
+    set_of: Vec<u32>,
+}
+
+#[derive(Encode, Decode)]
 struct BalanceRow {
     counts: Vec<u32>,
     costs: [f64; 4],
-    structure: (u32, u32, f64, f64),
+    structure: StructureRow,
     proven: bool,
     odd_share: f64,
     odd_subdomains: u32,
@@ -191,10 +203,11 @@ fn tally_row(tally: &Tally) -> TallyRow {
             tally.length_m,
             tally.length_dropped_m,
         ],
+        tally.sharp_angles,
     )
 }
 
-fn tally((rows, figures): TallyRow, words: &mut Words) -> Tally {
+fn tally((rows, figures, sharp_angles): TallyRow, words: &mut Words) -> Tally {
     let row = |(what, count, moved_m): (String, u64, f64)| (words.lasting(&what), count, moved_m);
     let [
         displacement_max_m,
@@ -212,6 +225,7 @@ fn tally((rows, figures): TallyRow, words: &mut Words) -> Tally {
         displacement_p99_over_size,
         length_m,
         length_dropped_m,
+        sharp_angles,
     }
 }
 
@@ -230,17 +244,52 @@ fn partition(curves: Vec<CurveRow>, subdomains: Vec<(Vec<Vec<u32>>, f64)>) -> Pa
     }
 }
 
+impl StructureRow {
+    fn of(it: &Structure) -> StructureRow {
+        StructureRow {
+            numbers: [
+                it.blocks,
+                it.mapped_before,
+                it.mapped,
+                it.rounds,
+                it.improved,
+            ],
+            costs: [it.worth, it.price, it.bound],
+            multipliers: it.multipliers.clone(),
+            parent: it.cuts.parent.clone(),
+            value2: it.cuts.value2.clone(),
+            set_of: it.cuts.set_of.clone(),
+        }
+    }
+
+    fn into_structure(self) -> Structure {
+        let [blocks, mapped_before, mapped, rounds, improved] = self.numbers;
+        let [worth, price, bound] = self.costs;
+        Structure {
+            blocks,
+            mapped_before,
+            mapped,
+            worth,
+            price,
+            bound,
+            rounds,
+            improved,
+            multipliers: self.multipliers,
+            cuts: Cuts {
+                parent: self.parent,
+                value2: self.value2,
+                set_of: self.set_of,
+            },
+        }
+    }
+}
+
 impl BalanceRow {
     fn of(it: &Balance) -> BalanceRow {
         BalanceRow {
             counts: it.counts.clone(),
             costs: [it.base, it.objective, it.optimum, it.bound],
-            structure: (
-                it.structure.blocks,
-                it.structure.mapped,
-                it.structure.price,
-                it.structure.bound,
-            ),
+            structure: StructureRow::of(&it.structure),
             proven: it.proven,
             odd_share: it.odd_share,
             odd_subdomains: it.odd_subdomains,
@@ -257,7 +306,6 @@ impl BalanceRow {
 
     fn into_balance(self) -> Balance {
         let [base, objective, optimum, bound] = self.costs;
-        let (blocks, mapped, price, structure_bound) = self.structure;
         Balance {
             counts: self.counts,
             base,
@@ -265,12 +313,7 @@ impl BalanceRow {
             optimum,
             bound,
             proven: self.proven,
-            structure: Structure {
-                blocks,
-                mapped,
-                price,
-                bound: structure_bound,
-            },
+            structure: self.structure.into_structure(),
             odd_share: self.odd_share,
             odd_subdomains: self.odd_subdomains,
             rows: self.rows,

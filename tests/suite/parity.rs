@@ -24,6 +24,8 @@ const OPTIONS: Options = Options {
     rows_max: 20_000,
     worth: 0.0,
     rounds_max: 20,
+    climb_max: 60,
+    neighbourhoods_max: 20,
 };
 
 /// A partition as parity sees it: only the sides of curves.
@@ -139,7 +141,7 @@ fn blocks(side: usize, seed: u64) -> (Partition, Goals) {
         let avenue = |x: usize, y: usize| vec![(across + x * side + y) as u32];
         g.blocks.push(Block {
             subdomain: id as u32,
-            sides: [
+            sides: vec![
                 street(x, y),
                 avenue(x + 1, y),
                 street(x, y + 1),
@@ -152,13 +154,8 @@ fn blocks(side: usize, seed: u64) -> (Partition, Goals) {
 
 /// Price of unequal opposite sides at a worth of 1.
 fn price(goals: &Goals, counts: &[u32]) -> f64 {
-    let total = |side: &Vec<u32>| {
-        side.iter()
-            .map(|&c| f64::from(counts[c as usize]))
-            .sum::<f64>()
-    };
     let larger = |block: &Block| {
-        let [a, b, c, d] = block.sides.each_ref().map(total);
+        let [a, b, c, d, ..] = block.totals(|curve| f64::from(counts[curve]));
         (a - c).abs().max((b - d).abs())
     };
     goals.blocks.iter().map(larger).sum()
@@ -324,8 +321,8 @@ fn infeasible_names_the_sub_domains() {
     assert_eq!(
         made.unwrap_err(),
         Error::Infeasible {
-            subdomain: 1,
-            members: 2
+            subdomains: vec![1, 2],
+            fixed: vec![2, 3]
         }
     );
 }
@@ -355,7 +352,7 @@ fn small_joins_are_optimal() {
         let graph = random_graph(&mut dice, nodes, edges, [3, 10, 1000][round % 3]);
         match least_choice(&graph) {
             Some(least) => assert_eq!(join_weight(&graph), least, "round {round}: {graph:?}"),
-            None => assert!(graph.hopeless(u32::MAX).is_some()),
+            None => assert!(graph.hopeless().is_some()),
         }
     }
 }
@@ -368,7 +365,7 @@ fn middle_sized_joins_prove_themselves() {
         let nodes = 20 + dice.below(200);
         let edges = nodes + dice.below(3 * nodes);
         let graph = random_graph(&mut dice, nodes, edges, [2, 5, 100, 100_000][round % 4]);
-        if graph.hopeless(u32::MAX).is_none() {
+        if graph.hopeless().is_none() {
             assert!(join_weight(&graph) <= spanning_tree(&graph));
         }
     }
@@ -417,6 +414,124 @@ fn equal_sides_are_worth_their_price() {
         assert!(total >= made.structure.bound - 1e-9);
         assert!(made.structure.mapped >= plain.structure.mapped);
         assert_eq!(made.optimum, plain.optimum);
+    }
+}
+
+/// All counts within two of the wish, patterns priced: the slow twin of cost and price together.
+fn brute_force_with_price(partition: &Partition, goals: &Goals, worth: i64) -> Option<i64> {
+    let n = partition.curves.len();
+    let mut counts: Vec<u32> = goals.lower.clone();
+    let mut best = None;
+    loop {
+        let mut total = vec![0; partition.subdomains.len()];
+        for (curve, count) in partition.curves.iter().zip(&counts) {
+            for side in [curve.left, curve.right] {
+                if side != OUTSIDE {
+                    total[side as usize] += count;
+                }
+            }
+        }
+        if total.iter().all(|total| total % 2 == 0) {
+            let cost: i64 = (0..n).map(|id| cost_units(goals, id, counts[id])).sum();
+            let price: i64 = goals.blocks.iter().map(|it| excess(it, &counts)).sum();
+            let all = cost + worth * price;
+            best = Some(best.map_or(all, |least: i64| least.min(all)));
+        }
+        let Some(next) = (0..n).find(|&id| counts[id] < goals.upper[id]) else {
+            return best;
+        };
+        counts[next] += 1;
+        counts[..next].copy_from_slice(&goals.lower[..next]);
+    }
+}
+
+/// Largest excess of the rules of a block, written from the table of patterns and not from them.
+fn excess(block: &Block, counts: &[u32]) -> i64 {
+    let totals = block.totals(|curve| f64::from(counts[curve]));
+    let n = totals.map(|total| total as i64);
+    let star = |at: &[usize]| -> i64 {
+        let all: i64 = at.iter().map(|&side| n[side]).sum();
+        at.iter().map(|&side| 2 + 2 * n[side] - all).max().unwrap()
+    };
+    let odd = (n[0] + n[2] + n[4]) % 2;
+    match block.sides.len() {
+        3 => star(&[0, 1, 2]).max(0),
+        4 => (n[0] - n[2]).abs().max((n[1] - n[3]).abs()),
+        6 => star(&[0, 2, 4]).max(star(&[1, 3, 5])).max(odd).max(0),
+        // Spoke i of five: half of n[i+1] - n[i+3] + n[i] - n[i+2] + n[i+4], at least 1.
+        _ => (0..5)
+            .map(|i| {
+                let at = |k: usize| n[(i + k) % 5];
+                2 - (at(1) - at(3) + at(0) - at(2) + at(4))
+            })
+            .max()
+            .unwrap()
+            .max(0),
+    }
+}
+
+/// A block of `sides` sides with others around it, which are no blocks.
+fn flower(sides: usize, dice: &mut Dice) -> (Partition, Goals) {
+    let rim: Vec<(u32, u32)> = (0..sides)
+        .map(|k| (0, if k % 2 == 0 { 1 } else { OUTSIDE }))
+        .chain([(1, OUTSIDE)])
+        .collect();
+    let goal: Vec<f64> = rim.iter().map(|_| 1.0 + 3.0 * dice.roll()).collect();
+    let mut g = goals(&goal, 1);
+    g.blocks.push(Block {
+        subdomain: 0,
+        sides: (0..sides as u32).map(|curve| vec![curve]).collect(),
+    });
+    (partition(2, &rim), g)
+}
+
+#[test]
+fn patterns_of_all_sides_are_best_together_with_cost() {
+    let mut dice = Dice(11);
+    let (mut optimal, rounds) = (0, 60);
+    for round in 0..rounds {
+        let (p, g) = flower(3 + round % 4, &mut dice);
+        let worth = [0.1, 0.4, 2.0][round % 3];
+        let made = parity::balance(&p, &g, &Options { worth, ..OPTIONS }).unwrap();
+        check(&p, &g, &made).unwrap();
+        let least = brute_force_with_price(&p, &g, (worth / COST_UNIT).round() as i64);
+        let least = least.expect("one more or less is always possible") as f64 * COST_UNIT;
+        let total = made.objective + made.structure.price;
+        assert!(
+            made.structure.bound <= least + COST_UNIT / 2.0,
+            "round {round}"
+        );
+        assert!(total >= least - COST_UNIT / 2.0, "round {round}");
+        optimal += u32::from(total < least + COST_UNIT / 2.0);
+    }
+    assert_eq!(optimal, rounds as u32, "HiGHS solves one neighbourhood");
+}
+
+#[test]
+fn multipliers_that_claim_too_much_are_refused() {
+    let (p, g) = blocks(6, 3);
+    let options = Options {
+        worth: 0.3,
+        ..OPTIONS
+    };
+    let made = parity::balance(&p, &g, &options).unwrap();
+    let mut raised = made.clone();
+    raised.structure.bound += COST_UNIT;
+    assert!(check(&p, &g, &raised).is_err());
+    let mut dear = made.clone();
+    dear.structure.multipliers[0] = (0.31 / COST_UNIT) as i64;
+    assert!(check(&p, &g, &dear).is_err());
+}
+
+/// The aim of the issue is 1 %.
+#[test]
+fn cost_and_price_are_near_their_bound() {
+    let (p, g) = blocks(40, 8);
+    for worth in [0.1, 0.3, 1.0] {
+        let made = parity::balance(&p, &g, &Options { worth, ..OPTIONS }).unwrap();
+        check(&p, &g, &made).unwrap();
+        let gap = made.structure_gap();
+        assert!((0.0..0.01).contains(&gap), "{worth}: {gap}");
     }
 }
 

@@ -1,15 +1,29 @@
 //! Tests of `pipeline`.
 
 use polder::chunk::reader::Mesh;
+use polder::domain::line::Domain;
+use polder::domain::line::Line;
+use polder::domain::line::Role;
 use polder::export::Format;
 use polder::export::export;
+use polder::geometry::grid::Grid;
+use polder::geometry::point::Point;
 use polder::ingest::CrsChoice;
+use polder::noding::arrangement::Arrangement;
+use polder::noding::arrangement::Piece;
+use polder::parity;
+use polder::partition::subdomains::Curve;
+use polder::partition::subdomains::OUTSIDE;
+use polder::partition::subdomains::Partition;
+use polder::partition::subdomains::Subdomain;
 use polder::pipeline::build;
 use polder::pipeline::job::CELL_M;
 use polder::pipeline::job::CORNER_DEG;
 use polder::pipeline::job::Job;
+use polder::pipeline::job::MATCH_SIDES;
 use polder::pipeline::ordered::IN_FLIGHT_PER_WORKER;
 use polder::pipeline::ordered::in_order;
+use polder::pipeline::refusal::explain;
 use polder::synth::City;
 use polder::synth::city;
 use std::fs;
@@ -72,6 +86,72 @@ fn no_work_is_done_at_once() {
     assert_eq!(in_order(0, 2, |n| n, |_, _| Err(())), Ok(()));
 }
 
+/// Parity knows numbers; what the user reads has the place, the lines, and what to do.
+#[test]
+fn what_parity_refuses_has_a_place_and_lines() {
+    let ring = [[0, 0], [4000, 0], [0, 3000]].map(|[x, y]| Point::new(x, y));
+    let line = |name: &str, source: u32, points: Vec<Point>| Line {
+        source,
+        role: Role::Constraint,
+        kind: 0,
+        name: name.to_string(),
+        points,
+    };
+    let domain = Domain {
+        grid: Grid {
+            origin_m: [500_000.0, 4_000_000.0],
+            cell_m: 0.001,
+        },
+        epsg: None,
+        kinds: vec!["dyke".to_string()],
+        lines: vec![
+            line("North", 3, vec![ring[0], ring[1]]),
+            line("", 7, vec![ring[1], ring[2], ring[0]]),
+        ],
+        digest: 0,
+    };
+    let piece = |line: u32| Piece {
+        line,
+        from_m: 0.0,
+        to_m: 1.0,
+    };
+    let edges = vec![
+        ([0, 1], vec![piece(0)]),
+        ([1, 2], vec![piece(1)]),
+        ([2, 0], vec![piece(1)]),
+    ];
+    let arrangement = Arrangement::from_parts(&ring, edges);
+    let partition = Partition {
+        curves: vec![Curve {
+            nodes: vec![0, 1, 2, 0],
+            edges: vec![0, 1, 2],
+            left: 0,
+            right: OUTSIDE,
+            is_seam: false,
+        }],
+        subdomains: vec![Subdomain {
+            walks: vec![vec![0]],
+            area_m2: 6.0,
+        }],
+    };
+    let refused = parity::error::Error::Infeasible {
+        subdomains: vec![0],
+        fixed: vec![0],
+    };
+    let said = explain(refused, &domain, &arrangement, &partition);
+    assert_eq!(said.exit_code(), 2);
+    let said = said.to_string();
+    for part in [
+        "(500000.000, 4000000.000)",
+        "feature 3 (dyke \"North\")",
+        "feature 7 (dyke)",
+        "cannot all be even",
+        "another size",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+}
+
 /// Builds a small city; the bytes of every file that must not depend on how it was built.
 fn bytes_of(
     folder: &Path,
@@ -91,8 +171,10 @@ fn bytes_of(
         cell_m: CELL_M,
         tile_m,
         corner_deg: CORNER_DEG,
+        without: Vec::new(),
         // Small, so that seams are made.
         seam_budget_quads: 1500,
+        match_sides: MATCH_SIDES,
         threads,
         force: false,
         resume: false,
