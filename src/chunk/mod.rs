@@ -46,6 +46,7 @@ pub mod chains;
 pub mod error;
 pub mod frame;
 pub mod linework;
+pub mod moves;
 pub mod reader;
 pub mod record;
 pub mod views;

@@ -19,6 +19,17 @@ pub enum Reason {
     Shrunk,
 }
 
+impl Reason {
+    /// Short stable words, in the order of the reasons.
+    pub const WORDS: [&str; 5] = [
+        "clipped",
+        "short-end",
+        "small-loop",
+        "beyond-tolerance",
+        "shrunk",
+    ];
+}
+
 /// A stretch of a line that was dropped. What was only moved, joined or merged (all within the
 /// tolerance) is counted in [`Tally`].
 #[derive(Clone, Debug, PartialEq)]

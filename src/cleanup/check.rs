@@ -35,6 +35,9 @@ pub enum Defect {
     },
     /// This line has a stretch, from and to in metres, that is neither covered nor dropped.
     Lost(LineId, f64, f64),
+    /// At this node two lines meet that are everywhere farther apart there than their tolerances
+    /// allow them to be moved.
+    FarApart(u32, LineId, LineId),
     /// At this node the outline does not go on.
     OpenOutline(u32),
     /// This edge is too short and no finding says so.
@@ -50,6 +53,9 @@ impl fmt::Display for Defect {
             }
             Defect::Lost(line, from_m, to_m) => {
                 write!(f, "line {line} is lost from {from_m} m to {to_m} m")
+            }
+            Defect::FarApart(node, one, other) => {
+                write!(f, "lines {one} and {other} meet at node {node} from afar")
             }
             Defect::OpenOutline(node) => write!(f, "the outline ends at node {node}"),
             Defect::ShortEdge(edge) => write!(f, "edge {edge} is too short"),
@@ -73,6 +79,7 @@ pub fn check(
     }
     let graph = Graph::new(&cleaned.arrangement, &measure);
     check_distances(&graph)?;
+    check_meetings(&graph)?;
     check_coverage(domain, &graph, input, cleaned)?;
     check_lengths(&graph, cleaned)
 }
@@ -100,6 +107,28 @@ fn check_distances(graph: &Graph) -> Result<(), Defect> {
             let line = piece.line;
             if away_m > graph.measure.tolerance_m[line as usize] + rounding {
                 return Err(Defect::TooFar { edge, line, away_m });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Lines only meet where they come within the sum of their tolerances: those that are everywhere
+/// farther apart keep their topology.
+fn check_meetings(graph: &Graph) -> Result<(), Defect> {
+    let rounding = 4.0 * graph.measure.grid().cell_m;
+    for node in graph.all_nodes() {
+        let edges = graph.star[node as usize].iter();
+        let pieces = edges.flat_map(|&edge| graph.edges[edge as usize].pieces_from(node));
+        let stretches: Vec<(LineId, f64)> = pieces.map(|it| (it.line, it.from_m)).collect();
+        for (k, &(one, at_m)) in stretches.iter().enumerate() {
+            for &(other, there_m) in stretches[..k].iter().filter(|it| it.0 != one) {
+                let limits = [one, other].map(|line| graph.measure.tolerance_m[line as usize]);
+                let [p, q] = [(one, at_m), (other, there_m)]
+                    .map(|(line, station_m)| graph.measure.point(line, station_m));
+                if distance(p, q) > limits[0] + limits[1] + rounding {
+                    return Err(Defect::FarApart(node, one, other));
+                }
             }
         }
     }

@@ -117,7 +117,7 @@ fn walk(
 
 /// The edge on which the walk of a face on the left goes on, having come to `node` along `edge`:
 /// the next one clockwise.
-fn leaving(graph: &Graph, edge: u32, node: u32) -> u32 {
+pub(super) fn leaving(graph: &Graph, edge: u32, node: u32) -> u32 {
     if let [e, f] = graph.star[node as usize][..] {
         return if e == edge { f } else { e };
     }

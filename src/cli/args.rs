@@ -118,8 +118,8 @@ pub struct BuildArgs {
     /// quarter of the size.
     #[arg(long)]
     pub min_edge: Option<f64>,
-    /// A line turns at a corner, which remains a node, if its direction changes by more than this,
-    /// degrees. Default: 30.
+    /// A line turns at a corner, which is not simplified away, if its direction changes by more than
+    /// this, degrees. Default: 30.
     #[arg(long)]
     pub corner_angle: Option<f64>,
     /// A step of clean-up to leave out, to measure what it is worth; may be given again.

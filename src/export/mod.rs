@@ -20,7 +20,8 @@
 //!   what shows them. As cleaned it is line work again: with the outline as polygons, without the
 //!   nodes that seams made, and with the places that clean-up had to leave, so that a build from it
 //!   finds it clean and changes nothing.
-//! - `changes`: GeoJSON of what was dropped and changed.
+//! - `changes`: GeoJSON of what was dropped, merged and moved (before and after, with the lines and
+//!   the distance), and of each operation of clean-up at its place.
 //!
 //! # Cost
 //! One pass over the chunks (two for .2dm), at about the speed of the disk. Memory: the frame and
@@ -30,6 +31,8 @@
 //! Pictures: `report`.
 
 pub mod error;
+
+pub use changes::MOVED_LEAST;
 
 mod changes;
 mod classic;

@@ -240,7 +240,8 @@ fn clean(
         let note = format!("{} nodes, {} edges", noded.points.len(), noded.edges.len());
         Ok(((noded, clipped), note))
     })?;
-    watch.stage("cleanup", 1000, |count| {
+    let before = noded.clone();
+    let cleaned = watch.stage("cleanup", 1000, |count| -> Result<_, Error> {
         let made = tiles::clean(domain, sizes, noded, options, count);
         findings.extend(made.findings);
         let mut dropped: Vec<Dropped> = clipped.iter().map(clipped_stretch).collect();
@@ -258,7 +259,14 @@ fn clean(
             cleaned.tally.displacement_max_m
         );
         Ok((cleaned, note))
-    })
+    })?;
+    watch.stage("rooms", 1, |_| -> Result<_, Error> {
+        let lost = cleanup::rooms::lost(domain, sizes, options, &before, &cleaned.arrangement);
+        let note = format!("{} sub-domains with room for elements lost", lost.len());
+        findings.extend(lost);
+        Ok(((), note))
+    })?;
+    Ok(cleaned)
 }
 
 fn clipped_stretch(piece: &Piece) -> Dropped {

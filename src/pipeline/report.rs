@@ -5,7 +5,10 @@ use crate::check::quality::Histogram;
 use crate::check::quality::Place;
 use crate::check::quality::Quality;
 use crate::check::verdict::Verdict;
+use crate::chunk::moves;
 use crate::chunk::reader::Mesh;
+use crate::cleanup::changes::Reason;
+use crate::export;
 use crate::geometry::point::Xy;
 use crate::meshing::patch::Method;
 use crate::pipeline::error::Error;
@@ -386,17 +389,70 @@ fn places(title: &str, note: &str, places: &[Place]) -> Table {
     table(title, note, &head, rows)
 }
 
+/// Count, length and largest displacement of one kind of change.
+#[derive(Default)]
+struct Sum {
+    count: u64,
+    length_m: f64,
+    moved_m: f64,
+}
+
+impl Sum {
+    fn row(&self, what: &str) -> Vec<String> {
+        let metres = |value: f64, digits: usize| match value > 0.0 {
+            true => format!("{value:.digits$}"),
+            false => String::new(),
+        };
+        vec![
+            what.to_string(),
+            self.count.to_string(),
+            metres(self.length_m, 1),
+            metres(self.moved_m, 3),
+        ]
+    }
+}
+
 fn changes(mesh: &Mesh) -> Table {
-    let rows = (mesh.lines().tally())
-        .map(|(what, count, moved_m)| {
-            vec![what.to_string(), count.to_string(), format!("{moved_m:.3}")]
-        })
-        .collect();
-    let note = "What clean-up changed; `polder export --format changes` gives the places.";
+    let lines = mesh.lines();
+    let [mut merged, mut moved] = [Sum::default(), Sum::default()];
+    for it in moves::moves(mesh, export::MOVED_LEAST * mesh.index().size_m) {
+        let sum = match it.merged_with.is_empty() {
+            true => &mut moved,
+            false => &mut merged,
+        };
+        sum.count += 1;
+        sum.length_m += it.to_m - it.from_m;
+        sum.moved_m = sum.moved_m.max(it.moved_m);
+    }
+    let mut rows = vec![
+        merged.row("stretches merged with another line"),
+        moved.row("other stretches moved by more than a tenth of the size"),
+    ];
+    for (reason, word) in (0..).zip(Reason::WORDS) {
+        let mut sum = Sum::default();
+        for row in (0..lines.dropped_line.len()).filter(|&it| lines.dropped_reason[it] == reason) {
+            sum.count += 1;
+            sum.length_m += lines.dropped_to_m[row] - lines.dropped_from_m[row];
+        }
+        if sum.count > 0 {
+            rows.push(sum.row(&format!("dropped: {word}")));
+        }
+    }
+    rows.extend(lines.tally().map(|(what, count, moved_m)| {
+        let sum = Sum {
+            count,
+            moved_m,
+            ..Sum::default()
+        };
+        sum.row(what)
+    }));
+    let note = "What clean-up did: stretches of lines first, then its operations. The layer of \
+                `polder export --format changes` has each with its place, its lines and how far it \
+                moved; what was merged or moved before and after.";
     table(
-        "Changes",
+        "What was changed",
         note,
-        &["change", "times", "moved at most, m"],
+        &["change", "number", "length, m", "moved at most, m"],
         rows,
     )
 }

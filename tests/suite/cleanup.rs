@@ -20,7 +20,7 @@ use rayon::iter::IntoParallelRefIterator;
 use rayon::iter::ParallelIterator;
 
 /// Half the size, no rule for any kind.
-fn usual(domain: &Domain) -> Options {
+pub fn usual(domain: &Domain) -> Options {
     Options {
         tolerance: Tolerance::ShareOfSize(0.5),
         by_kind: vec![Rule::FREE; domain.kinds.len()],
@@ -36,7 +36,7 @@ type Drawn<'a> = (&'a str, Vec<(i32, i32)>);
 
 /// Lines in millimetres; the first is the boundary, rings named "hole" are holes. What follows a
 /// colon is a kind.
-fn domain(lines: &[(&str, Vec<(i32, i32)>)]) -> Domain {
+pub fn domain(lines: &[(&str, Vec<(i32, i32)>)]) -> Domain {
     let kind_of = |what: &str| {
         what.split_once(':')
             .map_or(String::new(), |it| it.1.to_string())
@@ -69,7 +69,7 @@ fn domain(lines: &[(&str, Vec<(i32, i32)>)]) -> Domain {
     }
 }
 
-fn noded(domain: &Domain) -> Arrangement {
+pub fn noded(domain: &Domain) -> Arrangement {
     let tiles = noding::Options {
         tile_cells: 1 << 20,
     };
@@ -77,7 +77,7 @@ fn noded(domain: &Domain) -> Arrangement {
 }
 
 /// Cleans at `size_m` and checks all promises.
-fn cleaned(domain: &Domain, size_m: f64) -> Cleaned {
+pub fn cleaned(domain: &Domain, size_m: f64) -> Cleaned {
     cleaned_by(domain, size_m, &usual(domain))
 }
 
@@ -123,7 +123,7 @@ fn messy_line() -> impl Strategy<Value = Vec<(i32, i32)>> {
     })
 }
 
-fn messy_domain() -> impl Strategy<Value = Domain> {
+pub fn messy_domain() -> impl Strategy<Value = Domain> {
     let copies = prop::collection::vec((any::<prop::sample::Index>(), -900..900_i32), 0..4);
     (
         prop::collection::vec(messy_line(), 1..9),

@@ -175,6 +175,31 @@ fn changes_hold_dropped_stretches_of_the_line_as_read() {
     );
 }
 
+#[test]
+fn changes_show_what_was_moved_before_and_after() {
+    let mut tiny = tiny();
+    let mut lines = tiny.domain.lines.iter_mut();
+    let dyke = lines.find(|it| it.name.contains("dyke")).unwrap();
+    dyke.points.iter_mut().for_each(|it| it.x += 1_200);
+    let (dir, mesh) = tiny.mesh();
+    let out = dir.path().join("changes.geojson");
+    export(&mesh, Format::Changes, &out).unwrap();
+    let made = json(&out);
+    let features = made["features"].as_array().unwrap().iter();
+    let moved: Vec<&Value> = (features.filter(|it| it["properties"]["what"] == "moved")).collect();
+    let states = moved
+        .iter()
+        .map(|it| it["properties"]["state"].as_str().unwrap());
+    assert_eq!(states.collect::<Vec<_>>(), ["before", "after"]);
+    assert_eq!(moved[0]["properties"]["name"], "the \"old\" dyke");
+    assert_eq!(moved[0]["properties"]["moved_m"], 1.2);
+    let [before, after] = [moved[0], moved[1]].map(|it| floats(&it["geometry"]["coordinates"]));
+    assert!(
+        (before[0] - after[0] - 1.2).abs() < 1e-6,
+        "{before:?} {after:?}"
+    );
+}
+
 fn floats(coordinates: &Value) -> Vec<f64> {
     let pairs = coordinates.as_array().unwrap().iter();
     pairs

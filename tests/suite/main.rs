@@ -4,6 +4,7 @@ mod boundary;
 mod check;
 mod chunk;
 mod cleanup;
+mod cleanup_twin;
 mod cli;
 mod domain;
 mod export;
