@@ -14,6 +14,7 @@ use crate::meshing::kernel::before;
 use crate::meshing::kernel::quad_of;
 use crate::meshing::star::Phase;
 use crate::meshing::star::Star;
+use crate::meshing::triangulate::NONE;
 
 /// To open tangles.
 pub(crate) const OPEN: Phase = Phase {
@@ -148,12 +149,21 @@ pub(crate) fn lift_worst(kernel: &mut Kernel, below: f64, size_m: f64) {
 /// size costs no more than a solver's time step, a tenth of it is as bad as a corner of 17 degrees.
 const LARGE: f64 = 3.0;
 
-/// The scaled Jacobian, less if the quad is small.
+/// The same for its shortest side that is not on the outline: those are given.
+const LONG: f64 = 3.0;
+
+/// The scaled Jacobian, less if the quad is small or has a short side.
 pub(crate) fn worth(kernel: &Kernel, quad: u32, size_m: f64) -> f64 {
     let corners = kernel.corners(quad);
     let shape = scaled_jacobian(&corners);
     if shape > 0.0 {
-        shape.min(LARGE * hydraulic_size_m(&corners) / size_m)
+        let shortest_m = (0..4)
+            .filter(|&k| kernel.twins[quad as usize][k] != NONE)
+            .map(|k| distance(corners[k], corners[(k + 1) % 4]))
+            .fold(f64::INFINITY, f64::min);
+        shape
+            .min(LARGE * hydraulic_size_m(&corners) / size_m)
+            .min(LONG * shortest_m / size_m)
     } else {
         shape
     }
