@@ -16,6 +16,7 @@ use crate::meshing::kernel::quad_of;
 use crate::meshing::smooth::OPEN;
 use crate::meshing::smooth::PERFECT;
 use crate::meshing::smooth::smooth_few;
+use crate::meshing::smooth::worth;
 use crate::meshing::star::Phase;
 use crate::meshing::triangulate::NONE;
 
@@ -70,6 +71,7 @@ impl Pass {
 /// The clean-up of one mesh, with its memory of what was tried in vain.
 pub(crate) struct Cleaner {
     pub kernel: Kernel,
+    size_m: f64,
     /// Counts accepted operations.
     clock: u32,
     /// Clock when a node's surroundings last changed.
@@ -79,8 +81,9 @@ pub(crate) struct Cleaner {
 }
 
 impl Cleaner {
-    pub fn new(kernel: Kernel) -> Cleaner {
+    pub fn new(kernel: Kernel, size_m: f64) -> Cleaner {
         Cleaner {
+            size_m,
             changed: vec![1; kernel.nodes.len()],
             failed: vec![[0; 3]; kernel.quads.len()],
             clock: 1,
@@ -130,7 +133,7 @@ impl Cleaner {
         };
         match pass {
             Pass::Valence => irregular(),
-            Pass::Rescue(below) => self.kernel.quality(quad) < below,
+            Pass::Rescue(below) => worth(&self.kernel, quad, self.size_m) < below,
             Pass::Energy => self.kernel.quality(quad) < 0.85 && irregular(),
         }
     }
@@ -286,7 +289,7 @@ impl Cleaner {
         };
         for quad in quads {
             let quality = self.kernel.quality(quad);
-            shape.least = shape.least.min(quality);
+            shape.least = shape.least.min(worth(&self.kernel, quad, self.size_m));
             shape.energy += (1.0 - quality).powi(2);
         }
         shape
