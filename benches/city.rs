@@ -58,6 +58,7 @@ fn run(folder: &Path, lines: usize, size_m: f64, threads: usize) {
         cell_m: CELL_M,
         tile_m: None,
         corner_deg: CORNER_DEG,
+        without: Vec::new(),
         seam_budget_quads: SEAM_BUDGET_QUADS,
         threads,
         force: true,

@@ -62,4 +62,7 @@ pub struct Tally {
     /// Length dropped inside the domain ([`Reason::Clipped`] and [`Reason::Shrunk`] not counted),
     /// metres.
     pub length_dropped_m: f64,
+    /// Angles between neighbouring edges at a node below [`SHARP_DEG`](crate::cleanup::SHARP_DEG),
+    /// in the input and in the result.
+    pub sharp_angles: [u64; 2],
 }

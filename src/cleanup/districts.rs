@@ -38,6 +38,7 @@ use crate::cleanup::graph::Graph;
 use crate::cleanup::graph::Loose;
 use crate::cleanup::graph::Stand;
 use crate::cleanup::graph::as_cut;
+use crate::cleanup::leftovers;
 use crate::cleanup::make_room;
 use crate::cleanup::measure::Measure;
 use crate::domain::line::Domain;
@@ -68,7 +69,7 @@ const MARGIN: f64 = 1.0;
 pub struct Site<'a> {
     measure: Measure<'a>,
     arrangement: Arrangement,
-    /// False if the tolerance is zero.
+    /// False if the tolerance is zero, or all is clean already.
     is_on: bool,
     /// What to clean; none if there is too little work to share.
     pub districts: Vec<District>,
@@ -101,7 +102,9 @@ pub fn site<'a>(
     grain: &Grain,
 ) -> Site<'a> {
     let measure = Measure::new(domain, sizes, options);
-    let is_on = measure.allows_any();
+    let is_clean = (options.left.as_ref())
+        .is_some_and(|left| leftovers::are_only(&Graph::new(&arrangement, &measure), left));
+    let is_on = measure.allows_any() && !is_clean;
     let size = sizes.default_m / domain.grid.cell_m;
     let districts = if is_on {
         cut(&arrangement, grain, (grain.side_min * size).ceil() as i64)

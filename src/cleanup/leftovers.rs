@@ -19,12 +19,41 @@ pub(super) fn leftovers(graph: &Graph) -> Vec<Finding> {
     findings
 }
 
+/// True if all that is too short, too narrow or too sharp lies at these places, projected metres.
+pub(super) fn are_only(graph: &Graph, left: &[Xy]) -> bool {
+    let mut left = left.to_vec();
+    left.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let same_m = graph.measure.grid().cell_m;
+    let is_known = |at_m: Xy| {
+        let from = left.partition_point(|it| it[0] < at_m[0] - same_m);
+        (left[from..].iter())
+            .take_while(|it| it[0] <= at_m[0] + same_m)
+            .any(|it| (it[1] - at_m[1]).abs() <= same_m)
+    };
+    let edges_are = (graph.live().iter())
+        .all(|&edge| !is_short(graph, edge) || is_known(projected(graph, middle(graph, edge))));
+    let mut found = Vec::new();
+    edges_are
+        && (graph.all_nodes().iter()).all(|&node| {
+            (gaps_at(graph, node, &mut found).iter()).all(|gap| is_known(projected(graph, gap.at)))
+        })
+        && (wedges(graph, SHARP_DEG, &graph.all_nodes()).iter())
+            .all(|wedge| is_known(projected(graph, graph.metres(wedge.hub))))
+}
+
+fn is_short(graph: &Graph, edge: u32) -> bool {
+    let (a, b) = graph.ends_m(edge);
+    distance(a, b) < graph.measure.min_edge * graph.edges[edge as usize].size_m
+}
+
+fn middle(graph: &Graph, edge: u32) -> Xy {
+    let (a, b) = graph.ends_m(edge);
+    [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
+}
+
 fn short_edges(graph: &Graph) -> Vec<Finding> {
     let mut edges = graph.live();
-    edges.retain(|&edge| {
-        let (a, b) = graph.ends_m(edge);
-        distance(a, b) < graph.measure.min_edge * graph.edges[edge as usize].size_m
-    });
+    edges.retain(|&edge| is_short(graph, edge));
     edges.sort_by_key(|&edge| ends_in_order(graph, edge));
     edges.iter().map(|&edge| short_edge(graph, edge)).collect()
 }
@@ -50,43 +79,59 @@ fn short_edge(graph: &Graph, edge: u32) -> Finding {
             it.size_m
         ),
         feature: feature(graph, &lines),
-        at_m: projected(graph, [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]),
+        at_m: Some(projected(graph, middle(graph, edge))),
     }
 }
 
-/// Nodes too near to an edge that is not their own.
-fn narrow_gaps(graph: &Graph) -> Vec<Finding> {
-    let mut gaps: Vec<(Point, [Point; 2], u32, u32, f64)> = Vec::new();
-    let mut found = Vec::new();
-    for node in graph.all_nodes() {
-        let limit_m = graph.measure.min_edge * graph.size_at_m(node);
-        let reach = limit_m / graph.measure.grid().cell_m;
-        let at = graph.point(node);
-        graph.index.near(at, at, reach, &mut found);
-        for &edge in &found {
-            let limit_m = limit_m.min(graph.measure.min_edge * graph.edges[edge as usize].size_m);
-            if let Some(gap) = gap_m(graph, node, edge).filter(|&gap| gap < limit_m) {
-                gaps.push((at, ends_in_order(graph, edge), node, edge, gap));
-            }
-        }
-    }
-    gaps.sort_by_key(|it| (it.0, it.1));
-    let finding = |&(_, _, node, edge, gap): &(Point, [Point; 2], u32, u32, f64)| {
-        let [ours, theirs] =
-            [&graph.star[node as usize][..], &[edge]].map(|it| lines_of(graph, it));
-        let (a, b) = graph.ends_m(edge);
-        let (p, t) = (graph.metres(node), to_segment(graph.metres(node), a, b).1);
+/// A node too near to an edge that is not its own.
+struct Gap {
+    node: u32,
+    edge: u32,
+    width_m: f64,
+    /// Half way across, local metres.
+    at: Xy,
+}
+
+fn gaps_at(graph: &Graph, node: u32, found: &mut Vec<u32>) -> Vec<Gap> {
+    let limit_m = graph.measure.min_edge * graph.size_at_m(node);
+    let p = graph.point(node);
+    (graph.index).near(p, p, limit_m / graph.measure.grid().cell_m, found);
+    let gap = |&edge: &u32| {
+        let limit_m = limit_m.min(graph.measure.min_edge * graph.edges[edge as usize].size_m);
+        let width_m = gap_m(graph, node, edge).filter(|&it| it < limit_m)?;
+        let ((a, b), at) = (graph.ends_m(edge), graph.metres(node));
+        let t = to_segment(at, a, b).1;
         let foot = [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
+        Some(Gap {
+            node,
+            edge,
+            width_m,
+            at: [0.5 * (at[0] + foot[0]), 0.5 * (at[1] + foot[1])],
+        })
+    };
+    found.iter().filter_map(gap).collect()
+}
+
+fn narrow_gaps(graph: &Graph) -> Vec<Finding> {
+    let mut found = Vec::new();
+    let mut gaps: Vec<Gap> = (graph.all_nodes().iter())
+        .flat_map(|&node| gaps_at(graph, node, &mut found))
+        .collect();
+    gaps.sort_by_key(|it| (graph.point(it.node), ends_in_order(graph, it.edge)));
+    let finding = |gap: &Gap| {
+        let [ours, theirs] =
+            [&graph.star[gap.node as usize][..], &[gap.edge]].map(|it| lines_of(graph, it));
         Finding {
             what: "narrow-gap",
             text: format!(
-                "A gap of {gap:.3} m remains between {} and {}; closing it would move a line beyond \
+                "A gap of {:.3} m remains between {} and {}; closing it would move a line beyond \
                  its tolerance, or close a passage.",
+                gap.width_m,
                 named(graph, &ours),
                 named(graph, &theirs)
             ),
             feature: feature(graph, &ours),
-            at_m: projected(graph, [0.5 * (p[0] + foot[0]), 0.5 * (p[1] + foot[1])]),
+            at_m: Some(projected(graph, gap.at)),
         }
     };
     gaps.iter().map(finding).collect()
@@ -111,7 +156,7 @@ fn sharp_angles(graph: &Graph) -> Vec<Finding> {
                 wedge.angle_deg
             ),
             feature: feature(graph, &one),
-            at_m: projected(graph, graph.metres(wedge.hub)),
+            at_m: Some(projected(graph, graph.metres(wedge.hub))),
         }
     };
     sharp.iter().map(finding).collect()
@@ -143,7 +188,7 @@ fn feature(graph: &Graph, lines: &[LineId]) -> Option<u32> {
     Some(graph.measure.domain.lines[line as usize].source)
 }
 
-fn projected(graph: &Graph, [x, y]: Xy) -> Option<Xy> {
+fn projected(graph: &Graph, [x, y]: Xy) -> Xy {
     let origin_m = graph.measure.grid().origin_m;
-    Some([x + origin_m[0], y + origin_m[1]])
+    [x + origin_m[0], y + origin_m[1]]
 }

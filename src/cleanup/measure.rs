@@ -4,6 +4,7 @@ use crate::cleanup::Options;
 use crate::cleanup::rules::PRIORITY_MAX;
 use crate::cleanup::rules::Rule;
 use crate::cleanup::rules::SmallLoops;
+use crate::cleanup::steps::Step;
 use crate::domain::line::Domain;
 use crate::domain::line::LineId;
 use crate::domain::line::Role;
@@ -32,6 +33,7 @@ pub(super) struct Measure<'a> {
     pub(super) min_edge: f64,
     /// A line turns at a corner if its direction changes by more than this, degrees.
     pub(super) corner_deg: f64,
+    without: Vec<Step>,
     /// Wished edge length where no line says otherwise.
     pub(super) default_m: f64,
 }
@@ -55,6 +57,7 @@ impl<'a> Measure<'a> {
             keeps_loops: Vec::with_capacity(domain.lines.len()),
             min_edge: options.min_edge,
             corner_deg: options.corner_deg,
+            without: options.without.clone(),
             default_m: sizes.default_m,
         };
         for (id, line) in domain.lines.iter().enumerate() {
@@ -70,6 +73,11 @@ impl<'a> Measure<'a> {
             made.keeps_loops.push(rule.small_loops == SmallLoops::Keep);
         }
         made
+    }
+
+    /// True if this step is not left out.
+    pub(super) fn does(&self, step: Step) -> bool {
+        !self.without.contains(&step)
     }
 
     /// False if no line may be moved at all.

@@ -59,8 +59,8 @@
 //!
 //! # Cost
 //! Near-linear: each operation looks at a few cells of a hash grid; later rounds look only at what
-//! was touched. About 30 us a segment in all, nine tenths of it in districts. Memory: some 300 bytes
-//! an edge.
+//! was touched. About 60 us of one core a segment in all, four fifths of it in districts, which
+//! share cores. Memory: some 300 bytes an edge.
 //!
 //! # Not here
 //! Crossings (`noding`), sub-domains and curves (`partition`), chords of curves (none: nodes are
@@ -81,8 +81,10 @@ mod operate;
 mod relax;
 pub mod rules;
 mod separate;
+mod sharp;
 mod simplify;
 mod stations;
+pub mod steps;
 mod thread;
 mod wedges;
 
@@ -95,10 +97,12 @@ use crate::cleanup::relax::Wanted;
 use crate::cleanup::rules::Rule;
 use crate::cleanup::separate::Narrow;
 use crate::cleanup::simplify::Smooth;
+use crate::cleanup::steps::Step;
 use crate::cleanup::wedges::Zip;
 use crate::domain::finding::Finding;
 use crate::domain::line::Domain;
 use crate::domain::size::SizeWish;
+use crate::geometry::point::Xy;
 use crate::noding::arrangement::Arrangement;
 
 pub use crate::cleanup::districts::District;
@@ -139,8 +143,13 @@ pub struct Options {
     /// Least length of an edge, as a share of the wished size along its lines; [`SHORTEST`] is
     /// usual.
     pub min_edge: f64,
+    /// If the line work was cleaned before: the places that had to be left as they are, projected
+    /// metres. Where nothing else is too short, too narrow or too sharp, it is left alone.
+    pub left: Option<Vec<Xy>>,
     /// A line turns at a corner if its direction changes by more than this, degrees.
     pub corner_deg: f64,
+    /// Steps that are left out, to measure what they are worth.
+    pub without: Vec<Step>,
 }
 
 /// The line work, ready to be meshed.
@@ -178,7 +187,8 @@ pub fn clean(
 
 /// Measures the graph against the input, and makes the arrangement of it.
 fn finish(graph: Graph, input: Arrangement, is_on: bool) -> Cleaned {
-    let (mut dropped, tally) = audit::audit(&graph, &input);
+    let (mut dropped, mut tally) = audit::audit(&graph, &input);
+    let sharp_before = sharp::sharp_angles(&input, SHARP_DEG);
     let findings = leftovers::leftovers(&graph);
     let (arrangement, torn) = match is_on {
         true => {
@@ -189,6 +199,7 @@ fn finish(graph: Graph, input: Arrangement, is_on: bool) -> Cleaned {
         }
         false => (input, Vec::new()),
     };
+    tally.sharp_angles = [sharp_before, sharp::sharp_angles(&arrangement, SHARP_DEG)];
     dropped.extend(torn);
     dropped.sort_by(|a, b| (a.line.cmp(&b.line)).then(a.from_m.total_cmp(&b.from_m)));
     Cleaned {
@@ -307,42 +318,60 @@ const ROUNDS_MAX: usize = 6;
 
 /// All steps, in order.
 fn make_room(graph: &mut Graph) {
-    simplify::simplify(graph, &FINE, &graph.nodes());
+    simplify_if_wanted(graph, &FINE, &graph.nodes());
     let least = graph.measure.min_edge;
     for pass in [&GENTLE, &FIRM, &LAST] {
         let narrow = Narrow {
             edge: pass.narrow.edge.max(least),
             ..pass.narrow
         };
-        separate::separate(graph, &narrow, &graph.nodes());
+        separate_if_wanted(graph, &narrow, &graph.nodes());
         let mut nodes = graph.nodes();
         for _ in 0..ROUNDS_MAX {
-            simplify::simplify(graph, &SMOOTH, &nodes);
+            simplify_if_wanted(graph, &SMOOTH, &nodes);
             let mark = graph.touched.len();
             wedges::zip_wedges(graph, &pass.zip, &nodes);
-            collapse::collapse_thin(graph, &pass.thin, &nodes);
+            if graph.measure.does(Step::Collapse) {
+                collapse::collapse_thin(graph, &pass.thin, &nodes);
+            }
             nodes = graph.nodes_since(mark);
             if nodes.is_empty() {
                 break;
             }
-            separate::separate(graph, &narrow, &nodes);
+            separate_if_wanted(graph, &narrow, &nodes);
             nodes = graph.nodes_since(mark);
         }
     }
-    let (stuck, wanted) = (
-        Narrow {
-            edge: STUCK.edge.max(1.1 * least),
-            ..STUCK
-        },
-        Wanted {
-            edge: WANTED.edge.max(1.2 * least),
-            ..WANTED
-        },
-    );
     let mark = graph.touched.len();
     wedges::divide_wedges(graph, &GENTLE.zip, &graph.nodes());
-    relax::relax(graph, &wanted, &graph.nodes());
-    separate::separate(graph, &stuck, &graph.nodes());
-    simplify::simplify(graph, &SMOOTH, &graph.nodes_since(mark));
-    relax::relax(graph, &wanted, &graph.nodes_since(mark));
+    relax_if_wanted(graph, &graph.nodes());
+    let stuck = Narrow {
+        edge: STUCK.edge.max(1.1 * least),
+        ..STUCK
+    };
+    separate_if_wanted(graph, &stuck, &graph.nodes());
+    simplify_if_wanted(graph, &SMOOTH, &graph.nodes_since(mark));
+    relax_if_wanted(graph, &graph.nodes_since(mark));
+}
+
+fn simplify_if_wanted(graph: &mut Graph, smooth: &Smooth, nodes: &[u32]) {
+    if graph.measure.does(Step::Simplify) {
+        simplify::simplify(graph, smooth, nodes);
+    }
+}
+
+fn separate_if_wanted(graph: &mut Graph, narrow: &Narrow, nodes: &[u32]) {
+    if graph.measure.does(Step::Separate) {
+        separate::separate(graph, narrow, nodes);
+    }
+}
+
+fn relax_if_wanted(graph: &mut Graph, nodes: &[u32]) {
+    let wanted = Wanted {
+        edge: WANTED.edge.max(1.2 * graph.measure.min_edge),
+        ..WANTED
+    };
+    if graph.measure.does(Step::Relax) {
+        relax::relax(graph, &wanted, nodes);
+    }
 }

@@ -1,5 +1,5 @@
-//! Pushes nodes and edges apart, with frozen topology, until edges and gaps have the length that
-//! the mesh wants, or the tolerance is used up.
+//! Pushes nodes and edges apart, and nodes back to their lines, with frozen topology, until edges
+//! and gaps have the length that the mesh wants, or the tolerance is used up.
 
 use crate::cleanup::graph::Graph;
 use crate::cleanup::importance::is_rim_corner;
@@ -26,7 +26,7 @@ pub(super) struct Wanted {
 /// Share of the wanted push that is made at once: neighbours push too.
 const STEP: f64 = 0.6;
 /// Pushes below this share of the mesh size are not made.
-const STILL: f64 = 0.002;
+const STILL: f64 = 0.005;
 
 /// Moves `nodes` one after the other, in rounds over those that are pushed.
 pub(super) fn relax(graph: &mut Graph, wanted: &Wanted, nodes: &[u32]) {
@@ -40,6 +40,8 @@ pub(super) fn relax(graph: &mut Graph, wanted: &Wanted, nodes: &[u32]) {
                 continue;
             }
             let push = push_m(graph, wanted, node, &mut found, &mut around);
+            let home = homeward_m(graph, node);
+            let push = [push[0] + home[0], push[1] + home[1]];
             let push = along_rim(graph, node, push);
             let size = graph.size_at_m(node);
             if distance(push, [0.0; 2]) > STILL * size && pushed(graph, wanted, node, push) {
@@ -53,6 +55,32 @@ pub(super) fn relax(graph: &mut Graph, wanted: &Wanted, nodes: &[u32]) {
         again.dedup();
         active = again;
     }
+}
+
+/// Nodes farther than this from one of their lines are pulled back to it, in mesh sizes.
+const FAR: f64 = 0.2;
+
+/// Where the line that is farthest away pulls a node, metres.
+fn homeward_m(graph: &Graph, node: u32) -> Xy {
+    let at = graph.metres(node);
+    let mut farthest = (0.0, [0.0; 2]);
+    for &edge in &graph.star[node as usize] {
+        for piece in &graph.edges[edge as usize].pieces {
+            let (low, high) = (piece.from_m.min(piece.to_m), piece.from_m.max(piece.to_m));
+            let station = graph.measure.nearest(piece.line, low, high, at);
+            let place = graph.measure.point(piece.line, station);
+            let away = distance(at, place);
+            if away > farthest.0 {
+                farthest = (away, [place[0] - at[0], place[1] - at[1]]);
+            }
+        }
+    }
+    let (away, way) = farthest;
+    let far = FAR * graph.size_at_m(node);
+    if away <= far {
+        return [0.0; 2];
+    }
+    way.map(|it| it * (1.0 - far / away))
 }
 
 /// Corners of the outline stay, but at the ends of its short edges.

@@ -5,6 +5,7 @@ use crate::cleanup::graph::Graph;
 use crate::cleanup::measure::distance;
 use crate::cleanup::operate::Bend;
 use crate::cleanup::separate::join;
+use crate::cleanup::steps::Step;
 use crate::geometry::point::Point;
 use crate::geometry::point::Xy;
 use crate::geometry::predicates::by_angle;
@@ -41,7 +42,7 @@ pub(super) fn zip_wedges(graph: &mut Graph, zip: &Zip, nodes: &[u32]) {
         let is_there = [wedge.a, wedge.b]
             .iter()
             .all(|&it| graph.find(wedge.hub, it).is_some());
-        if is_there && zip_one(graph, zip, &wedge) {
+        if is_there && graph.measure.does(Step::Zip) && zip_one(graph, zip, &wedge) {
             graph.note("zipped", graph.point(wedge.hub), 0.0);
         } else if is_there {
             divide(graph, zip, &wedge);
@@ -63,6 +64,9 @@ const PARTS_MAX: f64 = 64.0;
 /// edge as a whole may be within tolerance neither here nor there, and nothing that looks at nodes
 /// sees how narrow the wedge is between its ends.
 fn divide(graph: &mut Graph, zip: &Zip, wedge: &Wedge) {
+    if !graph.measure.does(Step::Divide) {
+        return;
+    }
     let size = graph.size_at_m(wedge.hub);
     let cell_m = graph.measure.grid().cell_m;
     let near = zip.gap * size / (2.0 * (wedge.angle_deg / 2.0).to_radians().sin());

@@ -122,6 +122,9 @@ pub struct BuildArgs {
     /// degrees. Default: 30.
     #[arg(long)]
     pub corner_angle: Option<f64>,
+    /// A step of clean-up to leave out, to measure what it is worth; may be given again.
+    #[arg(long, value_name = "STEP", hide = true)]
+    pub without: Vec<String>,
     /// `local` for plane coordinates without a reference system, or an EPSG code that overrides
     /// the file's.
     #[arg(long)]

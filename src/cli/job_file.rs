@@ -4,6 +4,7 @@ use crate::cleanup::rules::HOLD_M;
 use crate::cleanup::rules::PRIORITY_MAX;
 use crate::cleanup::rules::Rule;
 use crate::cleanup::rules::SmallLoops;
+use crate::cleanup::steps::Step;
 use crate::cli::args::BuildArgs;
 use crate::ingest::CrsChoice;
 use crate::pipeline::job::CELL_M;
@@ -137,6 +138,7 @@ pub fn job(args: &BuildArgs) -> Result<Job, String> {
         cell_m: file.cell.unwrap_or(CELL_M),
         tile_m: args.tile.or(file.tile),
         corner_deg: (args.corner_angle.or(file.corner_angle)).unwrap_or(CORNER_DEG),
+        without: without(&args.without)?,
         seam_budget_quads: args
             .seam_budget
             .or(file.seam_budget)
@@ -148,6 +150,17 @@ pub fn job(args: &BuildArgs) -> Result<Job, String> {
     };
     validate(&job)?;
     Ok(job)
+}
+
+/// The steps of these names.
+fn without(names: &[String]) -> Result<Vec<Step>, String> {
+    let step = |name: &String| {
+        Step::named(name).ok_or_else(|| {
+            let known: Vec<&str> = Step::NAMED.iter().map(|it| it.0).collect();
+            format!("no step of clean-up is called {name}: {}", known.join(", "))
+        })
+    };
+    names.iter().map(step).collect()
 }
 
 fn read(path: &Path) -> Result<JobFile, String> {

@@ -71,6 +71,8 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         "length_m": outcome.length_m,
         "length_dropped_m": outcome.length_dropped_m,
         "length_shrunk_m": outcome.length_shrunk_m,
+        "sharp_angles_before": outcome.sharp_angles[0],
+        "sharp_angles_after": outcome.sharp_angles[1],
         "ilp_gap": outcome.ilp_gap,
         "pattern_gap": outcome.pattern_gap,
         "blocks": outcome.blocks[0],

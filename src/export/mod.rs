@@ -16,8 +16,10 @@
 //!   xugrid. Classic, because readers misread some UGRID files in HDF5; CDF-2 while every variable
 //!   stays below 4 GiB, CDF-5 beyond.
 //! - `sms`: .2dm for SMS, TUFLOW FV, BASEMENT, with a node string for each chain of each line.
-//! - `lines`: GeoJSON of every source line as meshed (or as cleaned); QGIS drops edge tags of mesh
-//!   files, so this is what shows them.
+//! - `lines`: GeoJSON of every source line as meshed; QGIS drops edge tags of mesh files, so this is
+//!   what shows them. As cleaned it is line work again: with the outline as polygons, without the
+//!   nodes that seams made, and with the places that clean-up had to leave, so that a build from it
+//!   finds it clean and changes nothing.
 //! - `changes`: GeoJSON of what was dropped and changed.
 //!
 //! # Cost
@@ -35,6 +37,7 @@ mod convention;
 mod destination;
 mod edges;
 mod lines;
+mod outline;
 mod sms;
 mod ugrid;
 

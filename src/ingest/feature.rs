@@ -72,6 +72,8 @@ pub struct Content {
     pub features: u32,
     /// Positions seen.
     pub points: u64,
+    /// The `polder_left` member: the places that an earlier clean-up left as they are.
+    pub left: Option<Vec<Xy>>,
     /// What was not used, by feature.
     pub findings: Vec<Finding>,
     sum: Xy,

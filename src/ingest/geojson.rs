@@ -119,6 +119,7 @@ impl<'de> Visitor<'de> for Top<'_, '_> {
                     map.next_value_seed(Features(&mut *reader))?;
                     has_features = true;
                 }
+                "polder_left" => reader.content.left = map.next_value()?,
                 "crs" => reader.content.crs = Some(map.next_value()?),
                 "type" | "geometry" | "properties" | "coordinates" | "geometries" => {
                     rest.insert(key, map.next_value()?);

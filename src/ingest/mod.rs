@@ -32,6 +32,7 @@
 
 use crate::domain::finding::Finding;
 use crate::domain::line::Domain;
+use crate::geometry::point::Xy;
 use crate::ingest::error::Error;
 use std::path::Path;
 
@@ -73,6 +74,9 @@ pub struct Ingested {
     pub domain: Domain,
     /// What a user should know, by feature.
     pub findings: Vec<Finding>,
+    /// If the file is line work that Polder has cleaned: the places that it had to leave as they
+    /// are, projected metres.
+    pub left: Option<Vec<Xy>>,
     /// Features in the file.
     pub features_read: u32,
     /// Positions in the file.
@@ -87,6 +91,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Ingested, Error> {
     let mut findings = Vec::new();
     let epsg = crs::decide(path, options.crs, &content, &mut findings)?;
     let (features_read, points_read) = (content.features, content.points);
+    let left = content.left.clone();
     let domain = gridding::place(path, options.cell_m, content, &mut findings)?;
     findings.sort_by_key(|finding| finding.feature);
     Ok(Ingested {
@@ -96,6 +101,7 @@ pub fn read(path: &Path, options: &Options) -> Result<Ingested, Error> {
             ..domain
         },
         findings,
+        left,
         features_read,
         points_read,
     })

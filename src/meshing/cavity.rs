@@ -167,7 +167,8 @@ fn fill(draft: &mut Draft, visits: &Visits, hole: &[u32], size_m: f64) -> Option
     Some(quads)
 }
 
-/// True if one can go from any triangle to any other: two parts that meet in a node may be odd each.
+/// True if one can go from any triangle to any other: two parts that meet in a node may be odd
+/// each.
 fn is_connected(triangles: &Triangles) -> bool {
     let mut seen = vec![false; triangles.neighbours.len()];
     let mut open = vec![0_u32];

@@ -4,6 +4,7 @@
 //! its cost does not depend on the size of the sub-domain.
 
 use crate::geometry::point::Xy;
+use crate::geometry::quad::distance;
 use rustc_hash::FxHashMap;
 
 /// End of a list.
@@ -105,7 +106,7 @@ fn side_of([a, b]: [Xy; 2], p: Xy) -> (f64, f64) {
     let (px, py) = (p[0] - a[0], p[1] - a[1]);
     let length2 = ex * ex + ey * ey;
     let t = ((px * ex + py * ey) / length2).clamp(0.0, 1.0);
-    let distance = (px - t * ex).hypot(py - t * ey);
+    let distance = distance([px, py], [t * ex, t * ey]);
     let cross = ex * py - ey * px;
     (
         distance,
@@ -153,7 +154,7 @@ impl Spacing {
                 let mut at = self.first.get(&(x, y)).copied().unwrap_or(END);
                 while at != END {
                     let (other, following) = self.points[at as usize];
-                    if (other[0] - p[0]).hypot(other[1] - p[1]) < gap_m {
+                    if distance(p, other) < gap_m {
                         return false;
                     }
                     at = following;

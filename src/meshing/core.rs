@@ -6,6 +6,7 @@
 //! the rim of the core, so the bulk costs a fill.
 
 use crate::geometry::point::Xy;
+use crate::geometry::quad::distance;
 use crate::meshing::lattice::Lattice;
 use crate::meshing::visits::Visits;
 
@@ -135,7 +136,7 @@ impl Core {
             let (a, b) = (self.visits[v], self.visits[next[v] as usize]);
             if !visits.on_seam[v] {
                 // A coarse side needs room to get finer.
-                let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+                let length = distance(a, b);
                 self.clear(a, b, CLEARANCE.max(1.0 + 0.8 * length) - 1e-6);
                 continue;
             }
@@ -416,7 +417,7 @@ fn capsule_on_row(a: Xy, b: Xy, radius: f64, y: f64) -> Option<[f64; 2]> {
             reach(p[0] + half);
         }
     }
-    let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+    let length = distance(a, b);
     for side in [radius, -radius] {
         let (nx, ny) = ((a[1] - b[1]) / length * side, (b[0] - a[0]) / length * side);
         let (ya, yb) = (a[1] + ny, b[1] + ny);

@@ -3,7 +3,8 @@
 use crate::geometry::point::Xy;
 use crate::meshing::patch::Method;
 
-/// A quad mesh over [`Visits`](crate::meshing::visits::Visits), not yet promised to be well shaped or even valid.
+/// A quad mesh over [`Visits`](crate::meshing::visits::Visits), not yet promised to be well shaped
+/// or even valid.
 ///
 /// Combinatorially sound: its edges used once are exactly the edges of the walks, all others are
 /// used twice in opposite directions.

@@ -29,10 +29,15 @@ pub(crate) enum Effort {
 /// Below this scaled Jacobian a quad may cost its neighbours some shape.
 const POOR: f64 = 0.3;
 
+/// Below this worth a quad is lifted at the end: far above the poorest, as the energy serves the
+/// mean and leaves the last percent behind. Measured on five cities: .75 for .3 raises the 1 %
+/// quantile by .02 to .04 for 5 % of the time.
+const LIFTED: f64 = 0.75;
+
 /// Moves below these shares of the wished edge length do not matter while the topology still
-/// changes, and at the end. Measured: a fifth of either changes the mean shape by less than .0005.
-const ROUGHLY: f64 = 0.02;
-const FINELY: f64 = 0.005;
+/// changes, and at the end. Measured: half of either changes the mean shape by less than .0005.
+const ROUGHLY: f64 = 0.04;
+const FINELY: f64 = 0.01;
 
 /// Finishes a draft; `None` if the result would break a promise.
 pub(crate) fn finish(
@@ -57,7 +62,7 @@ pub(crate) fn finish(
 pub(crate) fn improve(draft: &mut Draft, visits: &Visits, size_m: f64) {
     let mut kernel = Kernel::of(draft, visits);
     wish(&mut kernel, size_m);
-    let mut cleaner = Cleaner::new(kernel);
+    let mut cleaner = Cleaner::new(kernel, size_m);
     smooth(&mut cleaner, 10, ROUGHLY);
     cleaner.run(Pass::Valence, 6);
     cleaner.run(Pass::Rescue(0.35), 3);
@@ -74,19 +79,19 @@ pub(crate) fn improve(draft: &mut Draft, visits: &Visits, size_m: f64) {
         }
     }
     cleaner.run(Pass::Rescue(0.4), 3);
-    settle(cleaner, draft);
+    settle(cleaner, draft, size_m);
 }
 
 /// The last step of [`improve`] alone: the topology stays.
 fn smooth_only(draft: &mut Draft, visits: &Visits, size_m: f64) {
     let mut kernel = Kernel::of(draft, visits);
     wish(&mut kernel, size_m);
-    settle(Cleaner::new(kernel), draft);
+    settle(Cleaner::new(kernel, size_m), draft, size_m);
 }
 
-fn settle(mut cleaner: Cleaner, draft: &mut Draft) {
+fn settle(mut cleaner: Cleaner, draft: &mut Draft, size_m: f64) {
     smooth(&mut cleaner, 30, FINELY);
-    lift_worst(&mut cleaner.kernel, POOR, 5);
+    lift_worst(&mut cleaner.kernel, LIFTED, size_m);
     cleaner.kernel.store(draft);
 }
 

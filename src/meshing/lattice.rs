@@ -1,6 +1,7 @@
 //! The frame of the core: a square lattice, turned and shifted to suit the walks.
 
 use crate::geometry::point::Xy;
+use crate::geometry::quad::distance;
 use crate::meshing::visits::Visits;
 
 /// A square lattice; its coordinates count pitches from `origin_m` along its two axes.
@@ -28,7 +29,7 @@ impl Lattice {
             // (dx + i dy)^4 / l^3: length times the direction's fourth power.
             let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
             let (re, im) = (dx * dx - dy * dy, 2.0 * dx * dy);
-            let l = dx.hypot(dy);
+            let l = distance(p, q);
             c += (re * re - im * im) / (l * l * l);
             s += 2.0 * re * im / (l * l * l);
         }
@@ -41,7 +42,7 @@ impl Lattice {
         let mut phase = [[0.0; 2]; 2];
         for (p, q) in edges() {
             let (p, q) = (lattice.coordinates(p), lattice.coordinates(q));
-            let l = (q[0] - p[0]).hypot(q[1] - p[1]);
+            let l = distance(p, q);
             for k in 0..2 {
                 if (q[k] - p[k]).abs() < ALIGNED * l {
                     let turn = std::f64::consts::PI * (p[k] + q[k]);

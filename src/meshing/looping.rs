@@ -10,6 +10,7 @@ use crate::meshing::contour::Contour;
 use crate::meshing::draft::Draft;
 use crate::meshing::patch::Method;
 use crate::meshing::patterns;
+use crate::meshing::sheet::Shape;
 use crate::meshing::sheet::Sheet;
 use crate::meshing::splitting;
 use crate::meshing::splitting::Split;
@@ -44,7 +45,7 @@ pub(crate) fn mesh(visits: &Visits, size_m: f64) -> Option<Draft> {
             let contour = Contour::of(&sheet, ids);
             if contour.len() <= SMALL {
                 lay_small_or_pattern(&mut sheet, &contour, size_m)?;
-            } else if !lay_pattern(&mut sheet, &contour) {
+            } else if lay_pattern(&mut sheet, &contour).is_none() {
                 open.extend(split(&mut sheet, &contour, size_m)?);
             }
         }
@@ -59,30 +60,29 @@ fn split(sheet: &mut Sheet, contour: &Contour, size_m: f64) -> Option<[Vec<u32>;
 }
 
 /// Lays a pattern if it has good shape.
-fn lay_pattern(sheet: &mut Sheet, contour: &Contour) -> bool {
+fn lay_pattern(sheet: &mut Sheet, contour: &Contour) -> Option<Shape> {
     let mark = sheet.mark();
-    let good = patterns::lay(sheet, contour).is_some_and(|shape| shape.least > PATTERN_LEAST);
-    if !good {
+    let shape = patterns::lay(sheet, contour).filter(|shape| shape.least > PATTERN_LEAST);
+    if shape.is_none() {
         sheet.undo(mark);
     }
-    good
+    shape
 }
 
 /// Meshes a small loop by a pattern if one fits well.
-fn lay_small_or_pattern(sheet: &mut Sheet, contour: &Contour, size_m: f64) -> Option<()> {
-    if contour.len() > 6 && lay_pattern(sheet, contour) {
-        return Some(());
+fn lay_small_or_pattern(sheet: &mut Sheet, contour: &Contour, size_m: f64) -> Option<Shape> {
+    if contour.len() > 6
+        && let Some(shape) = lay_pattern(sheet, contour)
+    {
+        return Some(shape);
     }
     lay_small(sheet, contour, size_m)
 }
 
 /// Meshes a small loop by a closure, or by the best of several lines, each tried to the end.
-fn lay_small(sheet: &mut Sheet, contour: &Contour, size_m: f64) -> Option<()> {
+fn lay_small(sheet: &mut Sheet, contour: &Contour, size_m: f64) -> Option<Shape> {
     let tried = match contour.len() {
-        4 | 6 => {
-            closures::close(sheet, &contour.ids);
-            return Some(());
-        }
+        4 | 6 => return Some(closures::close(sheet, &contour.ids)),
         8 => 8,
         10 => 4,
         _ => 2,
@@ -90,9 +90,8 @@ fn lay_small(sheet: &mut Sheet, contour: &Contour, size_m: f64) -> Option<()> {
     let mark = sheet.mark();
     let mut best: Option<(f64, Split)> = None;
     for split in splitting::best(sheet, contour, size_m, tried) {
-        if lay_halves(sheet, contour, split, size_m).is_some() {
-            let shape = sheet.shape(mark);
-            let worth = shape.mean.min(0.5 + shape.least);
+        if let Some(shape) = lay_halves(sheet, contour, split, size_m) {
+            let worth = shape.mean().min(0.5 + shape.least);
             if best.is_none_or(|(most, _)| worth > most) {
                 best = Some((worth, split));
             }
@@ -102,10 +101,18 @@ fn lay_small(sheet: &mut Sheet, contour: &Contour, size_m: f64) -> Option<()> {
     lay_halves(sheet, contour, best?.1, size_m)
 }
 
-fn lay_halves(sheet: &mut Sheet, contour: &Contour, split: Split, size_m: f64) -> Option<()> {
+fn lay_halves(sheet: &mut Sheet, contour: &Contour, split: Split, size_m: f64) -> Option<Shape> {
+    let mut shape = Shape::NONE;
     for ids in splitting::halves(sheet, contour, split, size_m) {
-        let half = Contour::of(sheet, ids);
-        lay_small_or_pattern(sheet, &half, size_m)?;
+        // A loop that is closed needs no angles, which are most of the cost of a small one.
+        let half = match ids.len() {
+            4 | 6 => closures::close(sheet, &ids),
+            _ => {
+                let half = Contour::of(sheet, ids);
+                lay_small_or_pattern(sheet, &half, size_m)?
+            }
+        };
+        shape = shape.with(half);
     }
-    Some(())
+    Some(shape)
 }

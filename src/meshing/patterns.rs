@@ -1,10 +1,10 @@
 //! Loops with three to six sides: what their counts alone allow, in closed form.
 //!
-//! | sides | condition | pattern | irregular nodes |
+//! | sides | condition | pattern | irregular, by valence |
 //! |---|---|---|---|
 //! | 4 | opposite counts equal | grid | none |
-//! | 3, 5, 6 | `count[i] = spoke[i-1] + spoke[i+1]`, all spokes at least 1 | star | one of valence 3, 5, 6 |
-//! | 4 | any with even sum that a line across a corner makes fit | pair: stars of 3 and 5 | one of 3, one of 5 |
+//! | 3, 5, 6 | `count[i] = spoke[i-1] + spoke[i+1]`, spokes from 1 up | star | one of 3, 5, 6 |
+//! | 4 | a line across a corner makes it two stars | pair | one of 3, one of 5 |
 //!
 //! A star joins a centre to a point on each side, which leaves a grid at each corner (Tarini 2021;
 //! Takayama and others 2014). For 3 and 5 sides the spokes follow from the counts; for 6 sides the
@@ -79,7 +79,7 @@ pub(crate) fn lay(sheet: &mut Sheet, contour: &Contour) -> Option<Shape> {
         }
         let shape = lay_plan(sheet, contour, &plan);
         sheet.undo(mark);
-        let worth = shape.mean.min(0.5 + shape.least) - price;
+        let worth = shape.mean().min(0.5 + shape.least) - price;
         if shape.least > 0.0 && best.as_ref().is_none_or(|(most, _)| worth > *most) {
             best = Some((worth, plan));
         }
@@ -87,7 +87,7 @@ pub(crate) fn lay(sheet: &mut Sheet, contour: &Contour) -> Option<Shape> {
     best.map(|(_, plan)| lay_plan(sheet, contour, &plan))
 }
 
-/// How well `contour` promises to fit a pattern, from 0 to 1; the positions inside are not looked at.
+/// How well `contour` promises to fit a pattern, from 0 to 1, by its angles and counts alone.
 pub(crate) fn promise(contour: &Contour) -> f64 {
     if contour.len() < 4 || contour.angle.iter().any(|&angle| angle > REFLEX) {
         return 0.0;
@@ -419,8 +419,8 @@ fn lay_star(sheet: &mut Sheet, sides: &[Vec<u32>]) {
     }
 }
 
-/// A triangle at corner 0 and the pentagon left. Without a spoke to the line, the triangle is a grid
-/// and its centre, still of valence 3, lies on the line.
+/// A triangle at corner 0 and the pentagon left. Without a spoke to the line, the triangle is a
+/// grid and its centre, still of valence 3, lies on the line.
 fn lay_pair(sheet: &mut Sheet, sides: &[Vec<u32>], cut: Cut) {
     let (up, past) = (&sides[3], &sides[0]);
     let split = up.len() - 1 - cut.before;

@@ -5,6 +5,7 @@
 //! lattice nodes, so that strip and core go over into each other where there is room.
 
 use crate::geometry::point::Xy;
+use crate::geometry::quad::distance;
 use crate::meshing::clearance::Clearance;
 use crate::meshing::clearance::Spacing;
 use crate::meshing::core::Core;
@@ -92,7 +93,7 @@ impl WalkEdges {
         }
         for v in 0..count {
             let [a, b] = [visits.nodes[v], visits.nodes[walk.after[v] as usize]];
-            walk.length_m.push((b[0] - a[0]).hypot(b[1] - a[1]));
+            walk.length_m.push(distance(a, b));
             if border.rim_cell[v].is_none() {
                 walk.segments.push([a, b]);
             }
@@ -188,7 +189,7 @@ fn is_clear_of_core(core: &Core, p: Xy, gap: f64) -> bool {
     let (i, j) = (u[0] as usize, u[1] as usize);
     [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)]
         .into_iter()
-        .all(|(i, j)| (u[0] - i as f64).hypot(u[1] - j as f64) >= gap || !core.is_core_node(i, j))
+        .all(|(i, j)| distance(u, [i as f64, j as f64]) >= gap || !core.is_core_node(i, j))
 }
 
 /// Adds the lattice nodes of the strip that have room, those farthest from the walks first.
@@ -209,7 +210,7 @@ fn fill(core: &Core, walk: &WalkEdges, clearance: &Clearance, row: &Spacing, nod
                 .nearest(place, 2.0 * size_m)
                 .is_none_or(|nearest| {
                     let [a, b] = walk.segments[nearest.segment as usize];
-                    let spacing_m = (b[0] - a[0]).hypot(b[1] - a[1]);
+                    let spacing_m = distance(a, b);
                     nearest.inside
                         && nearest.distance_m > FILL_GAP * row_offset_m(spacing_m, size_m)
                 });

@@ -58,8 +58,9 @@ impl Score {
 
     /// The rank: higher is better; 1 for a perfect lattice.
     ///
-    /// The least Jacobian, as a share of what the sharpest corner allows, counts most while it is poor, because one bad element spoils a patch;
-    /// above .6 it hardly matters, then mean shape, regularity and the time step decide.
+    /// The least Jacobian, as a share of what the sharpest corner allows, counts most while it is
+    /// poor, because one bad element spoils a patch; above .6 it hardly matters, then mean shape,
+    /// regularity and the time step decide.
     pub fn rank(&self) -> f64 {
         let least = self.least / self.bound.min(0.6);
         0.4 * least.min(1.0) + 0.35 * self.mean + 0.15 * (1.0 - self.irregular) + 0.1 * self.size

@@ -23,13 +23,40 @@ pub(crate) struct Mark {
     quads: usize,
 }
 
-/// Shape of the quads since a mark.
+/// Shape of some quads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Shape {
     /// Least scaled Jacobian.
     pub least: f64,
+    sum: f64,
+    count: usize,
+}
+
+impl Shape {
+    /// No quads: perfect.
+    pub const NONE: Shape = Shape {
+        least: 1.0,
+        sum: 0.0,
+        count: 0,
+    };
+
     /// Mean scaled Jacobian.
-    pub mean: f64,
+    pub fn mean(&self) -> f64 {
+        if self.count > 0 {
+            self.sum / self.count as f64
+        } else {
+            1.0
+        }
+    }
+
+    /// The shape of these quads and those together.
+    pub fn with(self, other: Shape) -> Shape {
+        Shape {
+            least: self.least.min(other.least),
+            sum: self.sum + other.sum,
+            count: self.count + other.count,
+        }
+    }
 }
 
 impl Sheet {
@@ -91,17 +118,14 @@ impl Sheet {
 
     /// Shape of the quads laid since `mark`; perfect if there are none.
     pub fn shape(&self, mark: Mark) -> Shape {
-        let (mut least, mut sum) = (1.0_f64, 0.0);
+        let mut shape = Shape::NONE;
         for &quad in &self.quads[mark.quads..] {
             let jacobian = scaled_jacobian(&self.corners(quad));
-            least = least.min(jacobian);
-            sum += jacobian;
+            shape.least = shape.least.min(jacobian);
+            shape.sum += jacobian;
+            shape.count += 1;
         }
-        let count = self.quads.len() - mark.quads;
-        Shape {
-            least,
-            mean: if count > 0 { sum / count as f64 } else { 1.0 },
-        }
+        shape
     }
 
     /// Laplacian sweeps over the nodes laid since `mark`, which must all be inside what was laid

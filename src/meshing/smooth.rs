@@ -4,13 +4,17 @@
 //! by a safeguarded Newton step on 2 unknowns, since the clean-up needs cheap local smoothing far
 //! more often than a global one.
 
+use crate::geometry::point::Xy;
 use crate::geometry::quad::distance;
+use crate::geometry::quad::hydraulic_size_m;
+use crate::geometry::quad::scaled_jacobian;
 use crate::meshing::kernel::Kernel;
 use crate::meshing::kernel::after;
 use crate::meshing::kernel::before;
 use crate::meshing::kernel::quad_of;
 use crate::meshing::star::Phase;
 use crate::meshing::star::Star;
+use crate::meshing::triangulate::NONE;
 
 /// To open tangles.
 pub(crate) const OPEN: Phase = Phase {
@@ -115,11 +119,14 @@ pub(crate) fn smooth_few(kernel: &mut Kernel, nodes: &[u32], phase: Phase, sweep
     }
 }
 
-/// Raises the least scaled Jacobian around the free nodes of quads below `below`, by compass search:
-/// the few worst quads are ruled by lengths that the wished ones know nothing of.
-pub(crate) fn lift_worst(kernel: &mut Kernel, below: f64, sweeps: usize) {
-    for _ in 0..sweeps {
-        let poor = |&quad: &u32| kernel.lives(quad) && kernel.quality(quad) < below;
+/// Sweeps of [`lift_worst`] over the quads that are still too poor.
+const LIFTS: usize = 8;
+
+/// Raises the least [`worth`] around the free nodes of quads below `below`, by compass search: the
+/// few worst quads are ruled by lengths that the wished ones know nothing of.
+pub(crate) fn lift_worst(kernel: &mut Kernel, below: f64, size_m: f64) {
+    for _ in 0..LIFTS {
+        let poor = |&quad: &u32| kernel.lives(quad) && worth(kernel, quad, size_m) < below;
         let quads: Vec<u32> = (0..kernel.quads.len() as u32).filter(poor).collect();
         let mut nodes: Vec<u32> = quads
             .iter()
@@ -130,7 +137,7 @@ pub(crate) fn lift_worst(kernel: &mut Kernel, below: f64, sweeps: usize) {
         nodes.dedup();
         let mut any = false;
         for node in nodes {
-            any |= lift(kernel, node);
+            any |= lift(kernel, node, size_m);
         }
         if !any {
             break;
@@ -138,12 +145,50 @@ pub(crate) fn lift_worst(kernel: &mut Kernel, below: f64, sweeps: usize) {
     }
 }
 
+/// So many times its hydraulic size over the wished one, a quad is worth at most: a third of the
+/// size costs no more than a solver's time step, a tenth of it is as bad as a corner of 17 degrees.
+const LARGE: f64 = 3.0;
+
+/// The same for its shortest side that is not on the outline: those are given.
+const LONG: f64 = 3.0;
+
+/// The scaled Jacobian, less if the quad is small or has a short side.
+pub(crate) fn worth(kernel: &Kernel, quad: u32, size_m: f64) -> f64 {
+    let corners = kernel.corners(quad);
+    let shape = scaled_jacobian(&corners);
+    if shape > 0.0 {
+        let shortest_m = (0..4)
+            .filter(|&k| kernel.twins[quad as usize][k] != NONE)
+            .map(|k| distance(corners[k], corners[(k + 1) % 4]))
+            .fold(f64::INFINITY, f64::min);
+        shape
+            .min(LARGE * hydraulic_size_m(&corners) / size_m)
+            .min(LONG * shortest_m / size_m)
+    } else {
+        shape
+    }
+}
+
 /// A node may not come nearer to a neighbour than this share of the wished edge length to lift a
 /// quad: shape alone would let two nodes fall together.
-const APART: f64 = 0.1;
+const APART: f64 = 0.18;
 
-/// Compass search of one node for a better least quality of its quads; true if it moved.
-fn lift(kernel: &mut Kernel, node: u32) -> bool {
+const HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// Eight directions.
+const COMPASS: [Xy; 8] = [
+    [1.0, 0.0],
+    [HALF, HALF],
+    [0.0, 1.0],
+    [-HALF, HALF],
+    [-1.0, 0.0],
+    [-HALF, -HALF],
+    [0.0, -1.0],
+    [HALF, -HALF],
+];
+
+/// Compass search of one node for a better least worth of its quads; true if it moved.
+fn lift(kernel: &mut Kernel, node: u32, size_m: f64) -> bool {
     let spokes = kernel.spokes(node);
     let shortest = |kernel: &Kernel| {
         let at = kernel.nodes[node as usize];
@@ -151,7 +196,7 @@ fn lift(kernel: &mut Kernel, node: u32) -> bool {
         spokes.iter().map(length).fold(f64::INFINITY, f64::min)
     };
     let least = |kernel: &Kernel| {
-        let quality = |&side: &u32| kernel.quality(quad_of(side));
+        let quality = |&side: &u32| worth(kernel, quad_of(side), size_m);
         spokes.iter().map(quality).fold(f64::INFINITY, f64::min)
     };
     let mut step = 0.3 * shortest(kernel);
@@ -161,9 +206,8 @@ fn lift(kernel: &mut Kernel, node: u32) -> bool {
     for _ in 0..6 {
         let at = kernel.nodes[node as usize];
         let mut to = at;
-        for k in 0..8 {
-            let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_4).sin_cos();
-            kernel.nodes[node as usize] = [at[0] + step * cos, at[1] + step * sin];
+        for [x, y] in COMPASS {
+            kernel.nodes[node as usize] = [at[0] + step * x, at[1] + step * y];
             let quality = least(kernel);
             if quality > best && shortest(kernel) >= floor {
                 best = quality;

@@ -1,11 +1,11 @@
 //! The best line to split a loop in two.
 //!
 //! Cost of a line after Talbert and Parkinson 1990: the angles at both ends, its length, how badly
-//! whole edges fit on it; with a structuring index and a term for symmetry as Sarrate and Huerta 2000
-//! have them, here how well the halves fit a pattern and how much their lengths differ; and (ours)
-//! how near it passes other nodes. Where we depart: an angle part is measured against the nearest
-//! multiple of 90 degrees, not against 90, and what the corner lacked before the split is not
-//! charged to it.
+//! whole edges fit on it; with a structuring index and a term for symmetry, as Sarrate and Huerta
+//! 2000 have them: here how well the halves fit a pattern and how much their lengths differ; and
+//! (ours) how near it passes other nodes. Where we depart: an angle part is measured against the
+//! nearest multiple of 90 degrees, not against 90, and what the corner lacked before the split is
+//! not charged to it.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;

@@ -4,6 +4,7 @@ use crate::cleanup::SHORTEST;
 use crate::cleanup::Tolerance;
 use crate::cleanup::rules::Rule;
 use crate::cleanup::rules::SmallLoops;
+use crate::cleanup::steps::Step;
 use crate::ingest::CrsChoice;
 use std::path::PathBuf;
 
@@ -33,6 +34,8 @@ pub struct Job {
     pub tile_m: Option<f64>,
     /// A vertex that turns by more than this is a corner, degrees.
     pub corner_deg: f64,
+    /// Steps of clean-up that are left out, to measure what they are worth.
+    pub without: Vec<Step>,
     /// A sub-domain with more quads than this is cut by seams.
     pub seam_budget_quads: u32,
     /// What it is worth that the counts of a few-sided sub-domain fit a pattern, in the unit of what
@@ -96,6 +99,7 @@ impl Job {
             "kinds": rules,
             "cell_m": self.cell_m,
             "corner_deg": self.corner_deg,
+            "without": self.without.iter().map(|step| step.name()).collect::<Vec<_>>(),
             "seam_budget_quads": self.seam_budget_quads,
             "match_sides": self.match_sides,
         })

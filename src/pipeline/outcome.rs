@@ -33,6 +33,8 @@ pub struct Outcome {
     pub length_dropped_m: f64,
     /// Length of lines that became a node, metres.
     pub length_shrunk_m: f64,
+    /// Sharp angles at nodes of the line work, in the input and after clean-up.
+    pub sharp_angles: [u64; 2],
     /// Gap of the integer programme.
     pub ilp_gap: f64,
     /// Sub-domains with few sides, how many of them have counts that fit a pattern, and how many
@@ -75,6 +77,7 @@ impl Outcome {
             displacement_p99_over_size: plan.city.tally.displacement_p99_over_size,
             length_m: plan.city.tally.length_m,
             length_dropped_m: plan.city.tally.length_dropped_m,
+            sharp_angles: plan.city.tally.sharp_angles,
             length_shrunk_m: (plan.city.dropped.iter())
                 .filter(|it| it.reason == Reason::Shrunk)
                 .map(|it| it.to_m - it.from_m)

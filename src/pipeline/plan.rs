@@ -12,6 +12,7 @@ use crate::domain::finding::Finding;
 use crate::domain::line::Domain;
 use crate::domain::line::Role;
 use crate::domain::size::SizeWish;
+use crate::geometry::point::Xy;
 use crate::ingest;
 use crate::intervals;
 use crate::intervals::goals::Goals;
@@ -84,9 +85,12 @@ pub(super) fn plan(
     resume_from: Option<&Path>,
 ) -> Result<Plan, Error> {
     let mut findings = Vec::new();
-    let domain = read(job, watch, &mut findings)?;
+    let (domain, left) = read(job, watch, &mut findings)?;
     let sizes = sizes(job, &domain)?;
-    let cleaning = cleaning(job, &domain)?;
+    let cleaning = cleanup::Options {
+        left,
+        ..cleaning(job, &domain)?
+    };
     let parked = resume_from.and_then(|folder| spill::fetch(folder, &key(job, &domain)));
     let city = match parked {
         Some(city) => city,
@@ -146,7 +150,12 @@ fn city(
     })
 }
 
-fn read(job: &Job, watch: &Stopwatch, findings: &mut Vec<Finding>) -> Result<Domain, Error> {
+/// The line work, and the places that an earlier clean-up had to leave, if there was one.
+fn read(
+    job: &Job,
+    watch: &Stopwatch,
+    findings: &mut Vec<Finding>,
+) -> Result<(Domain, Option<Vec<Xy>>), Error> {
     watch.stage("ingest", 1, |_| {
         let options = ingest::Options {
             cell_m: job.cell_m,
@@ -159,7 +168,7 @@ fn read(job: &Job, watch: &Stopwatch, findings: &mut Vec<Finding>) -> Result<Dom
             read.points_read
         );
         findings.extend(read.findings);
-        Ok((read.domain, note))
+        Ok(((read.domain, read.left), note))
     })
 }
 
@@ -186,7 +195,9 @@ fn cleaning(job: &Job, domain: &Domain) -> Result<cleanup::Options, Error> {
         tolerance: job.tolerance(),
         by_kind,
         min_edge: job.min_edge(),
+        left: None,
         corner_deg: job.corner_deg,
+        without: job.without.clone(),
     })
 }
 

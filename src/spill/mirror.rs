@@ -28,7 +28,7 @@ type CurveRow = (Vec<u32>, Vec<u32>, u32, u32, bool);
 type Stretch = (u32, f64, f64);
 
 /// Rows of word, count, displacement; then the figures.
-type TallyRow = (Vec<(String, u64, f64)>, [f64; 6]);
+type TallyRow = (Vec<(String, u64, f64)>, [f64; 6], [u64; 2]);
 
 /// Word, sentence, feature, place.
 type FindingRow = (String, String, Option<u32>, Option<[f64; 2]>);
@@ -203,10 +203,11 @@ fn tally_row(tally: &Tally) -> TallyRow {
             tally.length_m,
             tally.length_dropped_m,
         ],
+        tally.sharp_angles,
     )
 }
 
-fn tally((rows, figures): TallyRow, words: &mut Words) -> Tally {
+fn tally((rows, figures, sharp_angles): TallyRow, words: &mut Words) -> Tally {
     let row = |(what, count, moved_m): (String, u64, f64)| (words.lasting(&what), count, moved_m);
     let [
         displacement_max_m,
@@ -224,6 +225,7 @@ fn tally((rows, figures): TallyRow, words: &mut Words) -> Tally {
         displacement_p99_over_size,
         length_m,
         length_dropped_m,
+        sharp_angles,
     }
 }
 

@@ -229,6 +229,7 @@ pub fn tiny() -> Tiny {
             displacement_p99_over_size: 0.01,
             length_m: 31.0,
             length_dropped_m: 1.0,
+            sharp_angles: [2, 1],
         },
         min_edge_m: 0.0,
         findings: vec![

@@ -25,7 +25,9 @@ fn usual(domain: &Domain) -> Options {
         tolerance: Tolerance::ShareOfSize(0.5),
         by_kind: vec![Rule::FREE; domain.kinds.len()],
         min_edge: cleanup::SHORTEST,
+        left: None,
         corner_deg: 30.0,
+        without: Vec::new(),
     }
 }
 
@@ -178,6 +180,29 @@ proptest! {
         let twice = cleanup::clean(&domain, &sizes, once.clone(), &usual(&domain)).arrangement;
         let (before, after) = (once.edges.len(), twice.edges.len());
         prop_assert!(before.abs_diff(after) <= 2 + before / 10, "{} {}", before, after);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// A second run that is told what the first one had to leave changes nothing at all.
+    #[test]
+    fn clean_line_work_is_left_alone(domain in messy_domain(), size in 2.0..15.0_f64) {
+        let once = cleaned(&domain, size);
+        let places = (once.findings.iter()).map(|it| it.at_m.unwrap()).collect();
+        let told = Options { left: Some(places), ..usual(&domain) };
+        let sizes = SizeWish::uniform(size, 1);
+        let twice = cleanup::clean(&domain, &sizes, once.arrangement.clone(), &told);
+        prop_assert_eq!(&twice.arrangement, &once.arrangement);
+        prop_assert!(twice.tally.rows.is_empty() && twice.changes.is_empty());
+        // A place that is not told is a reason to clean.
+        if !once.findings.is_empty() && once.findings[0].what == "short-edge" {
+            let told = Options { left: Some(Vec::new()), ..usual(&domain) };
+            let again = cleanup::clean(&domain, &sizes, once.arrangement.clone(), &told);
+            let untold = cleanup::clean(&domain, &sizes, once.arrangement.clone(), &usual(&domain));
+            prop_assert_eq!(again.arrangement, untold.arrangement);
+        }
     }
 }
 

@@ -141,6 +141,78 @@ fn a_job_file_does_the_same_as_flags_and_unknown_keys_are_refused() {
     refused(at, &["build", "kind.toml"], 2, &["sizes.canal", "river"]);
 }
 
+/// Builds `input`, writes its cleaned lines, builds from them and writes those again: nothing was
+/// changed the second time, and what is written is the same. Returns what it found otherwise.
+fn second_build(at: &Path, input: &str, size: &str) -> Result<(), String> {
+    let done = |words: &[&str]| {
+        let run = polder(at, words);
+        let error = String::from_utf8_lossy(&run.stderr).into_owned();
+        match run.status.code() {
+            Some(0) => Ok(()),
+            code => Err(format!("{words:?}: exit {code:?} {error}")),
+        }
+    };
+    for (from, mesh, to) in [
+        (input, "1.polder", "1.geojson"),
+        ("1.geojson", "2.polder", "2.geojson"),
+    ] {
+        done(&[
+            "build", from, "--size", size, "--out", mesh, "--quiet", "--force",
+        ])?;
+        done(&[
+            "export",
+            mesh,
+            "--format",
+            "lines",
+            "--cleaned",
+            "--out",
+            to,
+            "--force",
+        ])?;
+    }
+    let mesh = polder::chunk::reader::Mesh::open(&at.join("2.polder")).unwrap();
+    let changes: Vec<_> = mesh.lines().tally().collect();
+    if !changes.is_empty() || mesh.lines().displacement_max_m > 0.002 {
+        let moved_m = mesh.lines().displacement_max_m;
+        return Err(format!(
+            "{input} {size}: changed {changes:?}, moved {moved_m} m"
+        ));
+    }
+    let coordinates = |file: &str| {
+        let text = fs::read_to_string(at.join(file)).unwrap();
+        let made: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let features = made["features"].as_array().unwrap().iter();
+        let lines = features.filter(|it| it["geometry"]["type"] == "LineString");
+        let mut lines: Vec<String> = lines.map(|it| it["geometry"].to_string()).collect();
+        lines.sort();
+        lines
+    };
+    match coordinates("1.geojson") == coordinates("2.geojson") {
+        true => Ok(()),
+        false => Err(format!("{input} {size}: other lines")),
+    }
+}
+
+#[test]
+fn cleaned_lines_are_line_work_that_is_left_alone() {
+    let folder = TempDir::new().unwrap();
+    city(folder.path());
+    second_build(folder.path(), "city.geojson", "20").unwrap();
+    let shared = std::env::var("POLDER_CASES").unwrap_or("../shared/cases".to_string());
+    let shared = Path::new(env!("CARGO_MANIFEST_DIR")).join(shared);
+    for (case, size) in [
+        ("muncie-hecras.geojson", "28.1"),
+        ("prague-bubenec.geojson", "8.94"),
+        ("tricky-loops.geojson", "10"),
+    ] {
+        let input = shared.join(case);
+        match input.exists() {
+            true => second_build(folder.path(), input.to_str().unwrap(), size).unwrap(),
+            false => println!("skipped: no {case} here (POLDER_CASES names the folder)"),
+        }
+    }
+}
+
 #[test]
 fn rules_by_kind_are_taken_and_what_they_cannot_mean_is_refused() {
     let folder = TempDir::new().unwrap();

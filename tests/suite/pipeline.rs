@@ -171,6 +171,7 @@ fn bytes_of(
         cell_m: CELL_M,
         tile_m,
         corner_deg: CORNER_DEG,
+        without: Vec::new(),
         // Small, so that seams are made.
         seam_budget_quads: 1500,
         match_sides: MATCH_SIDES,
