@@ -25,6 +25,7 @@
 //! 12. `bounds`: each curve's count lies between its bounds.
 //! 13. `certificate`: the cost of the counts is as claimed and not below the bound, which is
 //!     computed again from the duals.
+//! 14. `patterns`: the same for cost and patterns' price together, from multipliers and duals.
 //!
 //! # Needs
 //! A mesh that [`Mesh::open`] accepts. Nothing else: not the input, not the code that made it.
@@ -51,6 +52,7 @@ mod counts;
 mod following;
 mod outline;
 mod parity;
+mod patterns;
 mod rings;
 mod segments;
 mod shortest;
@@ -103,6 +105,7 @@ pub fn check(mesh: &Mesh, options: &Options) -> Verdict {
     promises.push(following::check(mesh, options.slack_m));
     promises.push(shortest.promise());
     promises.extend(parity::check(mesh));
+    promises.push(patterns::check(mesh));
     Verdict { promises, quality }
 }
 

@@ -99,8 +99,12 @@ fn verify(frame: &FrameView, given: &CertificateView, promise: &mut Promise) {
         });
     }
     let gap = (objective - bound) as f64 / ((objective - base).max(1)) as f64;
+    let beyond = match frame.patterns {
+        Some(_) => "spent on patterns, share",
+        None => "gap",
+    };
     promise.says(format!(
-        "objective {objective}, bound {bound}, free rounding {base} (units of {unit:e}); gap {gap:.6}"
+        "objective {objective}, bound {bound}, free rounding {base} (units of {unit:e}); {beyond} {gap:.6}"
     ));
 }
 

@@ -4,7 +4,9 @@ use crate::geometry::point::Xy;
 use crate::intervals::goals::Goals;
 use crate::noding::arrangement::Piece;
 use crate::parity::balance::Balance;
+use crate::parity::balance::Structure;
 use crate::parity::programme::COST_UNIT;
+use crate::parity::programme::units;
 use crate::partition::subdomains::Subdomain;
 use crate::partition::subdomains::SubdomainId;
 
@@ -32,7 +34,6 @@ pub struct Certificate {
 impl From<Balance> for Certificate {
     fn from(balance: Balance) -> Certificate {
         // Costs in a balance are whole multiples of the unit.
-        let units = |cost: f64| (cost / COST_UNIT).round() as i64;
         Certificate {
             cost_unit: COST_UNIT,
             objective: units(balance.objective),
@@ -43,6 +44,40 @@ impl From<Balance> for Certificate {
             set_dual2: balance.cuts.value2,
             set_of: balance.cuts.set_of,
         }
+    }
+}
+
+/// Proof of cost and patterns' price together; its blocks are those of the goals.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Patterns {
+    /// Price of an excess of one, cost units.
+    pub worth: i64,
+    /// Price of all blocks, cost units.
+    pub price: i64,
+    /// Lower bound of cost and price of any even counts, cost units.
+    pub bound: i64,
+    /// A multiplier for each rule of each block, cost units.
+    pub multipliers: Vec<i64>,
+    /// Odd set -> the next larger set around it, or `u32::MAX`; parents precede children.
+    pub set_parent: Vec<u32>,
+    /// Odd set -> twice its dual, positive.
+    pub set_dual2: Vec<i64>,
+    /// Sub-domain, then second half of a block -> the least set that holds it, or `u32::MAX`.
+    pub set_of: Vec<u32>,
+}
+
+impl Patterns {
+    /// The proof of `made`; `None` if no patterns were wished for.
+    pub fn of(made: &Structure) -> Option<Patterns> {
+        (!made.multipliers.is_empty()).then(|| Patterns {
+            worth: units(made.worth),
+            price: units(made.price),
+            bound: units(made.bound),
+            multipliers: made.multipliers.clone(),
+            set_parent: made.cuts.parent.clone(),
+            set_dual2: made.cuts.value2.clone(),
+            set_of: made.cuts.set_of.clone(),
+        })
     }
 }
 
@@ -80,4 +115,6 @@ pub struct Frame {
     pub goals: Goals,
     /// How good the counts are.
     pub certificate: Option<Certificate>,
+    /// The same for patterns.
+    pub patterns: Option<Patterns>,
 }

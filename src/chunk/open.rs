@@ -13,6 +13,7 @@ use crate::chunk::views::ChunkView;
 use crate::chunk::views::FrameView;
 use crate::chunk::views::IndexView;
 use crate::chunk::views::LinesView;
+use crate::chunk::views::PatternsView;
 use crate::geometry::grid::Grid;
 use flatbuffers::Follow;
 use flatbuffers::Vector;
@@ -219,6 +220,19 @@ fn frame_view<'a>(table: &frame_file::Frame<'a>) -> FrameView<'a> {
             base: it.base(),
             bound: it.bound(),
             claimed: (!it.claimed().is_nan()).then(|| it.claimed()),
+            set_parent: slice(it.set_parent()),
+            set_dual2: slice(it.set_dual2()),
+            set_of: slice(it.set_of()),
+        }),
+        patterns: table.patterns().map(|it| PatternsView {
+            worth: it.worth(),
+            price: it.price(),
+            bound: it.bound(),
+            block_subdomain: slice(it.block_subdomain()),
+            block_start: slice(it.block_start()),
+            side_start: slice(it.side_start()),
+            side_curves: slice(it.side_curves()),
+            multiplier: slice(it.multiplier()),
             set_parent: slice(it.set_parent()),
             set_dual2: slice(it.set_dual2()),
             set_of: slice(it.set_of()),

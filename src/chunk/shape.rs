@@ -79,6 +79,7 @@ pub(crate) fn frame(view: &FrameView) -> Shape {
     length("piece_from_m", view.piece_from_m.len(), pieces)?;
     length("piece_to_m", view.piece_to_m.len(), pieces)?;
     subdomains(view)?;
+    patterns(view)?;
     match &view.certificate {
         None => Ok(()),
         Some(it) => {
@@ -95,6 +96,23 @@ pub(crate) fn frame(view: &FrameView) -> Shape {
             expect(rises.all(|it: bool| it), || "sets are not nested".into())
         }
     }
+}
+
+fn patterns(view: &FrameView) -> Shape {
+    let Some(it) = &view.patterns else {
+        return Ok(());
+    };
+    let blocks = it.block_subdomain.len();
+    let sides = it.side_start.len().saturating_sub(1);
+    below("block_subdomain", it.block_subdomain, view.size_m.len())?;
+    offsets("block_start", it.block_start, blocks, sides)?;
+    offsets("side_start", it.side_start, sides, it.side_curves.len())?;
+    below("side_curves", it.side_curves, view.left.len())?;
+    length("multiplier", it.multiplier.len(), sides)?;
+    let known = |w: &[u32]| (3..=6).contains(&(w[1] - w[0]));
+    expect(it.block_start.windows(2).all(known), || {
+        "a block has fewer than three or more than six sides".into()
+    })
 }
 
 fn subdomains(view: &FrameView) -> Shape {

@@ -83,6 +83,33 @@ pub struct CertificateView<'a> {
     pub set_of: &'a [u32],
 }
 
+/// The proof of cost and patterns' price together, in whole cost units.
+#[derive(Clone, Copy, Debug)]
+pub struct PatternsView<'a> {
+    /// Price of an excess of one.
+    pub worth: i64,
+    /// Price of all blocks, as claimed.
+    pub price: i64,
+    /// Lower bound, as claimed.
+    pub bound: i64,
+    /// Block -> its sub-domain.
+    pub block_subdomain: &'a [u32],
+    /// Block -> sides, CSR; rules and multipliers alike.
+    pub block_start: &'a [u32],
+    /// Side -> curves, CSR.
+    pub side_start: &'a [u32],
+    /// Curves, side by side.
+    pub side_curves: &'a [u32],
+    /// Rule -> multiplier.
+    pub multiplier: &'a [i64],
+    /// Odd set -> the next larger set around it, or `u32::MAX`.
+    pub set_parent: &'a [u32],
+    /// Odd set -> twice its dual.
+    pub set_dual2: &'a [i64],
+    /// Node -> the least set that holds it, or `u32::MAX`.
+    pub set_of: &'a [u32],
+}
+
 /// The frame: boundary nodes, curves, pieces, sub-domains.
 #[derive(Clone, Copy, Debug)]
 pub struct FrameView<'a> {
@@ -126,6 +153,8 @@ pub struct FrameView<'a> {
     pub weight: &'a [f64],
     /// How good the counts are.
     pub certificate: Option<CertificateView<'a>>,
+    /// The same for patterns.
+    pub patterns: Option<PatternsView<'a>>,
 }
 
 impl<'a> FrameView<'a> {

@@ -2,6 +2,7 @@
 
 use crate::intervals::goals::Goals;
 use crate::parity::balance::Balance;
+use crate::parity::balance::Structure;
 use crate::parity::draft::Draft;
 use crate::parity::draft::Places;
 use crate::parity::programme::Programme;
@@ -59,14 +60,41 @@ fn structure(partition: &Partition, goals: &Goals, balance: &Balance) -> Result<
     if made.multipliers.is_empty() {
         return Ok(());
     }
-    let worth = units(made.worth);
-    let (rules, places) = (Rules::of(goals), Places::of(partition, goals));
-    let draft = Draft::new(goals, &rules, &places, worth, balance.counts.clone());
-    let bound = structure::bound_units(partition, goals, worth, made)?;
-    let found = (draft.mapped(), draft.price(), bound);
+    let found = recount(partition, goals, &balance.counts, made)?;
     let said = (made.mapped, units(made.price), units(made.bound));
-    match found == said && bound <= draft.total() {
+    match (found.mapped, found.price, found.bound) == said && found.bound <= found.total {
         true => Ok(()),
         false => Err(format!("structure: {said:?} said, {found:?} found")),
     }
+}
+
+/// What counts cost with the price of patterns, and what is proven of it; whole cost units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Recount {
+    /// Blocks whose counts fit a pattern.
+    pub mapped: u32,
+    /// Price of all blocks.
+    pub price: i64,
+    /// Cost and price.
+    pub total: i64,
+    /// What any even counts cost at least with their price, from multipliers and cuts alone.
+    pub bound: i64,
+}
+
+/// Recounts from the counts, `made.worth` and the proof in `made`; trusts none of its other numbers.
+pub fn recount(
+    partition: &Partition,
+    goals: &Goals,
+    counts: &[u32],
+    made: &Structure,
+) -> Result<Recount, String> {
+    let worth = units(made.worth);
+    let (rules, places) = (Rules::of(goals), Places::of(partition, goals));
+    let draft = Draft::new(goals, &rules, &places, worth, counts.to_vec());
+    Ok(Recount {
+        mapped: draft.mapped(),
+        price: draft.price(),
+        total: draft.total(),
+        bound: structure::bound_units(partition, goals, worth, made)?,
+    })
 }

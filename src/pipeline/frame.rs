@@ -5,6 +5,7 @@ use crate::boundary::walks::Site;
 use crate::boundary::walks::curve_nodes;
 use crate::chunk::frame::Certificate;
 use crate::chunk::frame::Frame;
+use crate::chunk::frame::Patterns;
 use crate::noding::arrangement::Arrangement;
 use crate::noding::arrangement::Piece;
 use crate::partition::subdomains::Curve;
@@ -27,6 +28,7 @@ pub(super) fn frame(plan: &Plan) -> Frame {
         subdomains: plan.city.partition.subdomains.clone(),
         size_m: vec![plan.sizes.default_m; plan.city.partition.subdomains.len()],
         goals: plan.city.goals.clone(),
+        patterns: Patterns::of(&plan.city.balance.structure),
         certificate: Some(Certificate::from(plan.city.balance.clone())),
         ..Frame::default()
     };

@@ -60,7 +60,7 @@ pub const CELL_M: f64 = 0.001;
 pub const SEAM_BUDGET_QUADS: u32 = 20_000;
 
 /// Worth of a pattern unless the job says otherwise: see the table in `benches/README.md`.
-pub const MATCH_SIDES: f64 = 0.5;
+pub const MATCH_SIDES: f64 = 1.2;
 
 impl Job {
     /// The tolerance where no kind says otherwise: as given, or half the size.

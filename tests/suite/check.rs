@@ -46,7 +46,7 @@ fn a_whole_mesh_keeps_every_promise() {
                 .expect("it is on the contract page")
         })
         .collect();
-    assert!(order.is_sorted() && names.len() == 13, "{names:?}");
+    assert!(order.is_sorted() && names.len() == 14, "{names:?}");
 }
 
 #[test]

@@ -8,8 +8,10 @@ use crate::chunk::encode::offsets;
 use crate::chunk::error::Error;
 use crate::chunk::frame::Certificate;
 use crate::chunk::frame::Frame;
+use crate::chunk::frame::Patterns;
 use crate::chunk::generated::frame as frame_file;
 use crate::chunk::writer::Place;
+use crate::intervals::goals::Block;
 use crate::partition::subdomains::OUTSIDE;
 use flatbuffers::WIPOffset;
 use std::path::Path;
@@ -36,6 +38,31 @@ fn certificate<'a>(
     frame_file::Certificate::create(builder, &args)
 }
 
+fn patterns<'a>(
+    builder: &mut Builder<'a>,
+    given: &Patterns,
+    blocks: &[Block],
+) -> WIPOffset<frame_file::Patterns<'a>> {
+    let sides = || blocks.iter().flat_map(|it| &it.sides);
+    let subdomains: Vec<u32> = blocks.iter().map(|it| it.subdomain).collect();
+    let curves: Vec<u32> = sides().flatten().copied().collect();
+    let block_start = offsets(blocks.iter().map(|it| it.sides.len()));
+    let args = frame_file::PatternsArgs {
+        worth: given.worth,
+        price: given.price,
+        bound: given.bound,
+        block_subdomain: Some(builder.create_vector(&subdomains)),
+        block_start: Some(builder.create_vector(&block_start)),
+        side_start: Some(builder.create_vector(&offsets(sides().map(Vec::len)))),
+        side_curves: Some(builder.create_vector(&curves)),
+        multiplier: Some(builder.create_vector(&given.multipliers)),
+        set_parent: Some(builder.create_vector(&given.set_parent)),
+        set_dual2: Some(builder.create_vector(&given.set_dual2)),
+        set_of: Some(builder.create_vector(&given.set_of)),
+    };
+    frame_file::Patterns::create(builder, &args)
+}
+
 /// What a frame takes, bytes.
 fn frame_bytes(frame: &Frame) -> usize {
     let walks = frame
@@ -53,6 +80,9 @@ fn frame_bytes(frame: &Frame) -> usize {
         + 16 * frame.subdomains.len()
         + 4 * walks
         + sets
+        + (frame.patterns.as_ref()).map_or(0, |it| {
+            12 * it.set_parent.len() + 4 * it.set_of.len() + 20 * it.multipliers.len()
+        })
 }
 
 /// The bytes of the frame file.
@@ -70,6 +100,7 @@ pub(crate) fn frame(frame: &Frame, place: &Place, path: &Path) -> Result<Encoded
     let from_m: Vec<f64> = frame.pieces.iter().map(|p| p.from_m).collect();
     let to_m: Vec<f64> = frame.pieces.iter().map(|p| p.to_m).collect();
     let proof = (frame.certificate.as_ref()).map(|given| certificate(&mut b, given));
+    let fit = (frame.patterns.as_ref()).map(|it| patterns(&mut b, it, &frame.goals.blocks));
     let args = frame_file::FrameArgs {
         schema: SCHEMA,
         origin_x_m: place.grid.origin_m[0],
@@ -96,6 +127,7 @@ pub(crate) fn frame(frame: &Frame, place: &Place, path: &Path) -> Result<Encoded
         upper: Some(b.create_vector(&frame.goals.upper)),
         weight: Some(b.create_vector(&frame.goals.weight)),
         certificate: proof,
+        patterns: fit,
     };
     let root = frame_file::Frame::create(&mut b, &args);
     frame_file::finish_frame_buffer(&mut b, root);

@@ -234,6 +234,295 @@ impl ::core::fmt::Debug for Certificate<'_> {
       ds.finish()
   }
 }
+pub enum PatternsOffset {}
+#[derive(Copy, Clone, PartialEq)]
+
+/// Proof of how good the counts are where few-sided sub-domains should fit a pattern: their cost and
+/// the patterns' price together. A block's price is `worth` times the largest excess of its rules
+/// (see `intervals::goals::rules`). Each rule has a multiplier, at most `worth` together in a block;
+/// they tilt the cost of each curve on it, and what is left of `worth` is the price of an edge between
+/// the two halves of a block with four or six sides (sides 0, 2, 4 and the others). The sets prove of
+/// that graph what those of the certificate prove of the plain one.
+pub struct Patterns<'a> {
+  pub _tab: ::flatbuffers::Table<'a>,
+}
+
+impl<'a> ::flatbuffers::Follow<'a> for Patterns<'a> {
+  type Inner = Patterns<'a>;
+  #[inline]
+  unsafe fn follow(buf: &'a [u8], loc: usize) -> Self::Inner {
+    Self { _tab: unsafe { ::flatbuffers::Table::new(buf, loc) } }
+  }
+}
+
+impl<'a> Patterns<'a> {
+  pub const VT_WORTH: ::flatbuffers::VOffsetT = 4;
+  pub const VT_PRICE: ::flatbuffers::VOffsetT = 6;
+  pub const VT_BOUND: ::flatbuffers::VOffsetT = 8;
+  pub const VT_BLOCK_SUBDOMAIN: ::flatbuffers::VOffsetT = 10;
+  pub const VT_BLOCK_START: ::flatbuffers::VOffsetT = 12;
+  pub const VT_SIDE_START: ::flatbuffers::VOffsetT = 14;
+  pub const VT_SIDE_CURVES: ::flatbuffers::VOffsetT = 16;
+  pub const VT_MULTIPLIER: ::flatbuffers::VOffsetT = 18;
+  pub const VT_SET_PARENT: ::flatbuffers::VOffsetT = 20;
+  pub const VT_SET_DUAL2: ::flatbuffers::VOffsetT = 22;
+  pub const VT_SET_OF: ::flatbuffers::VOffsetT = 24;
+
+  #[inline]
+  pub unsafe fn init_from_table(table: ::flatbuffers::Table<'a>) -> Self {
+    Patterns { _tab: table }
+  }
+  #[allow(unused_mut)]
+  pub fn create<'bldr: 'args, 'args: 'mut_bldr, 'mut_bldr, A: ::flatbuffers::Allocator + 'bldr>(
+    _fbb: &'mut_bldr mut ::flatbuffers::FlatBufferBuilder<'bldr, A>,
+    args: &'args PatternsArgs<'args>
+  ) -> ::flatbuffers::WIPOffset<Patterns<'bldr>> {
+    let mut builder = PatternsBuilder::new(_fbb);
+    builder.add_bound(args.bound);
+    builder.add_price(args.price);
+    builder.add_worth(args.worth);
+    if let Some(x) = args.set_of { builder.add_set_of(x); }
+    if let Some(x) = args.set_dual2 { builder.add_set_dual2(x); }
+    if let Some(x) = args.set_parent { builder.add_set_parent(x); }
+    if let Some(x) = args.multiplier { builder.add_multiplier(x); }
+    if let Some(x) = args.side_curves { builder.add_side_curves(x); }
+    if let Some(x) = args.side_start { builder.add_side_start(x); }
+    if let Some(x) = args.block_start { builder.add_block_start(x); }
+    if let Some(x) = args.block_subdomain { builder.add_block_subdomain(x); }
+    builder.finish()
+  }
+
+
+  /// Price of an excess of one, cost units.
+  #[inline]
+  pub fn worth(&self) -> i64 {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<i64>(Patterns::VT_WORTH, Some(0)).unwrap()}
+  }
+  /// Price of all blocks, cost units.
+  #[inline]
+  pub fn price(&self) -> i64 {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<i64>(Patterns::VT_PRICE, Some(0)).unwrap()}
+  }
+  /// Lower bound of cost and price of any even counts, cost units.
+  #[inline]
+  pub fn bound(&self) -> i64 {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<i64>(Patterns::VT_BOUND, Some(0)).unwrap()}
+  }
+  /// One a block: its sub-domain.
+  #[inline]
+  pub fn block_subdomain(&self) -> ::flatbuffers::Vector<'a, u32> {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, u32>>>(Patterns::VT_BLOCK_SUBDOMAIN, None).unwrap()}
+  }
+  /// One a block, CSR into side_start and multiplier.
+  #[inline]
+  pub fn block_start(&self) -> ::flatbuffers::Vector<'a, u32> {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, u32>>>(Patterns::VT_BLOCK_START, None).unwrap()}
+  }
+  /// One a side, CSR into side_curves. Sides in order around, the first one anywhere.
+  #[inline]
+  pub fn side_start(&self) -> ::flatbuffers::Vector<'a, u32> {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, u32>>>(Patterns::VT_SIDE_START, None).unwrap()}
+  }
+  /// Curves of each side.
+  #[inline]
+  pub fn side_curves(&self) -> ::flatbuffers::Vector<'a, u32> {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, u32>>>(Patterns::VT_SIDE_CURVES, None).unwrap()}
+  }
+  /// One a rule; a block has as many rules as sides. Cost units, not negative.
+  #[inline]
+  pub fn multiplier(&self) -> ::flatbuffers::Vector<'a, i64> {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, i64>>>(Patterns::VT_MULTIPLIER, None).unwrap()}
+  }
+  /// As in Certificate; nodes are sub-domains, then the second halves of blocks in order.
+  #[inline]
+  pub fn set_parent(&self) -> ::flatbuffers::Vector<'a, u32> {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, u32>>>(Patterns::VT_SET_PARENT, None).unwrap()}
+  }
+  #[inline]
+  pub fn set_dual2(&self) -> ::flatbuffers::Vector<'a, i64> {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, i64>>>(Patterns::VT_SET_DUAL2, None).unwrap()}
+  }
+  #[inline]
+  pub fn set_of(&self) -> ::flatbuffers::Vector<'a, u32> {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, u32>>>(Patterns::VT_SET_OF, None).unwrap()}
+  }
+}
+
+impl ::flatbuffers::Verifiable for Patterns<'_> {
+  #[inline]
+  fn run_verifier(
+    v: &mut ::flatbuffers::Verifier, pos: usize
+  ) -> Result<(), ::flatbuffers::InvalidFlatbuffer> {
+    v.visit_table(pos)?
+     .visit_field::<i64>("worth", Self::VT_WORTH, false)?
+     .visit_field::<i64>("price", Self::VT_PRICE, false)?
+     .visit_field::<i64>("bound", Self::VT_BOUND, false)?
+     .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u32>>>("block_subdomain", Self::VT_BLOCK_SUBDOMAIN, true)?
+     .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u32>>>("block_start", Self::VT_BLOCK_START, true)?
+     .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u32>>>("side_start", Self::VT_SIDE_START, true)?
+     .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u32>>>("side_curves", Self::VT_SIDE_CURVES, true)?
+     .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, i64>>>("multiplier", Self::VT_MULTIPLIER, true)?
+     .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u32>>>("set_parent", Self::VT_SET_PARENT, true)?
+     .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, i64>>>("set_dual2", Self::VT_SET_DUAL2, true)?
+     .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u32>>>("set_of", Self::VT_SET_OF, true)?
+     .finish();
+    Ok(())
+  }
+}
+pub struct PatternsArgs<'a> {
+    pub worth: i64,
+    pub price: i64,
+    pub bound: i64,
+    pub block_subdomain: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u32>>>,
+    pub block_start: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u32>>>,
+    pub side_start: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u32>>>,
+    pub side_curves: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u32>>>,
+    pub multiplier: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, i64>>>,
+    pub set_parent: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u32>>>,
+    pub set_dual2: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, i64>>>,
+    pub set_of: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u32>>>,
+}
+impl<'a> Default for PatternsArgs<'a> {
+  #[inline]
+  fn default() -> Self {
+    PatternsArgs {
+      worth: 0,
+      price: 0,
+      bound: 0,
+      block_subdomain: None, // required field
+      block_start: None, // required field
+      side_start: None, // required field
+      side_curves: None, // required field
+      multiplier: None, // required field
+      set_parent: None, // required field
+      set_dual2: None, // required field
+      set_of: None, // required field
+    }
+  }
+}
+
+pub struct PatternsBuilder<'a: 'b, 'b, A: ::flatbuffers::Allocator + 'a> {
+  fbb_: &'b mut ::flatbuffers::FlatBufferBuilder<'a, A>,
+  start_: ::flatbuffers::WIPOffset<::flatbuffers::TableUnfinishedWIPOffset>,
+}
+impl<'a: 'b, 'b, A: ::flatbuffers::Allocator + 'a> PatternsBuilder<'a, 'b, A> {
+  #[inline]
+  pub fn add_worth(&mut self, worth: i64) {
+    self.fbb_.push_slot::<i64>(Patterns::VT_WORTH, worth, 0);
+  }
+  #[inline]
+  pub fn add_price(&mut self, price: i64) {
+    self.fbb_.push_slot::<i64>(Patterns::VT_PRICE, price, 0);
+  }
+  #[inline]
+  pub fn add_bound(&mut self, bound: i64) {
+    self.fbb_.push_slot::<i64>(Patterns::VT_BOUND, bound, 0);
+  }
+  #[inline]
+  pub fn add_block_subdomain(&mut self, block_subdomain: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , u32>>) {
+    self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Patterns::VT_BLOCK_SUBDOMAIN, block_subdomain);
+  }
+  #[inline]
+  pub fn add_block_start(&mut self, block_start: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , u32>>) {
+    self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Patterns::VT_BLOCK_START, block_start);
+  }
+  #[inline]
+  pub fn add_side_start(&mut self, side_start: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , u32>>) {
+    self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Patterns::VT_SIDE_START, side_start);
+  }
+  #[inline]
+  pub fn add_side_curves(&mut self, side_curves: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , u32>>) {
+    self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Patterns::VT_SIDE_CURVES, side_curves);
+  }
+  #[inline]
+  pub fn add_multiplier(&mut self, multiplier: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , i64>>) {
+    self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Patterns::VT_MULTIPLIER, multiplier);
+  }
+  #[inline]
+  pub fn add_set_parent(&mut self, set_parent: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , u32>>) {
+    self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Patterns::VT_SET_PARENT, set_parent);
+  }
+  #[inline]
+  pub fn add_set_dual2(&mut self, set_dual2: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , i64>>) {
+    self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Patterns::VT_SET_DUAL2, set_dual2);
+  }
+  #[inline]
+  pub fn add_set_of(&mut self, set_of: ::flatbuffers::WIPOffset<::flatbuffers::Vector<'b , u32>>) {
+    self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Patterns::VT_SET_OF, set_of);
+  }
+  #[inline]
+  pub fn new(_fbb: &'b mut ::flatbuffers::FlatBufferBuilder<'a, A>) -> PatternsBuilder<'a, 'b, A> {
+    let start = _fbb.start_table();
+    PatternsBuilder {
+      fbb_: _fbb,
+      start_: start,
+    }
+  }
+  #[inline]
+  pub fn finish(self) -> ::flatbuffers::WIPOffset<Patterns<'a>> {
+    let o = self.fbb_.end_table(self.start_);
+    self.fbb_.required(o, Patterns::VT_BLOCK_SUBDOMAIN,"block_subdomain");
+    self.fbb_.required(o, Patterns::VT_BLOCK_START,"block_start");
+    self.fbb_.required(o, Patterns::VT_SIDE_START,"side_start");
+    self.fbb_.required(o, Patterns::VT_SIDE_CURVES,"side_curves");
+    self.fbb_.required(o, Patterns::VT_MULTIPLIER,"multiplier");
+    self.fbb_.required(o, Patterns::VT_SET_PARENT,"set_parent");
+    self.fbb_.required(o, Patterns::VT_SET_DUAL2,"set_dual2");
+    self.fbb_.required(o, Patterns::VT_SET_OF,"set_of");
+    ::flatbuffers::WIPOffset::new(o.value())
+  }
+}
+
+impl ::core::fmt::Debug for Patterns<'_> {
+  fn fmt(&self, f: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+    let mut ds = f.debug_struct("Patterns");
+      ds.field("worth", &self.worth());
+      ds.field("price", &self.price());
+      ds.field("bound", &self.bound());
+      ds.field("block_subdomain", &self.block_subdomain());
+      ds.field("block_start", &self.block_start());
+      ds.field("side_start", &self.side_start());
+      ds.field("side_curves", &self.side_curves());
+      ds.field("multiplier", &self.multiplier());
+      ds.field("set_parent", &self.set_parent());
+      ds.field("set_dual2", &self.set_dual2());
+      ds.field("set_of", &self.set_of());
+      ds.finish()
+  }
+}
 pub enum FrameOffset {}
 #[derive(Copy, Clone, PartialEq)]
 
@@ -273,6 +562,7 @@ impl<'a> Frame<'a> {
   pub const VT_UPPER: ::flatbuffers::VOffsetT = 44;
   pub const VT_WEIGHT: ::flatbuffers::VOffsetT = 46;
   pub const VT_CERTIFICATE: ::flatbuffers::VOffsetT = 48;
+  pub const VT_PATTERNS: ::flatbuffers::VOffsetT = 50;
 
   #[inline]
   pub unsafe fn init_from_table(table: ::flatbuffers::Table<'a>) -> Self {
@@ -286,6 +576,7 @@ impl<'a> Frame<'a> {
     let mut builder = FrameBuilder::new(_fbb);
     builder.add_origin_y_m(args.origin_y_m);
     builder.add_origin_x_m(args.origin_x_m);
+    if let Some(x) = args.patterns { builder.add_patterns(x); }
     if let Some(x) = args.certificate { builder.add_certificate(x); }
     if let Some(x) = args.weight { builder.add_weight(x); }
     if let Some(x) = args.upper { builder.add_upper(x); }
@@ -499,6 +790,14 @@ impl<'a> Frame<'a> {
     // which contains a valid value in this slot
     unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<Certificate>>(Frame::VT_CERTIFICATE, None)}
   }
+  /// The same for patterns; absent if none were wished for.
+  #[inline]
+  pub fn patterns(&self) -> Option<Patterns<'a>> {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<Patterns>>(Frame::VT_PATTERNS, None)}
+  }
 }
 
 impl ::flatbuffers::Verifiable for Frame<'_> {
@@ -530,6 +829,7 @@ impl ::flatbuffers::Verifiable for Frame<'_> {
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u32>>>("upper", Self::VT_UPPER, true)?
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, f64>>>("weight", Self::VT_WEIGHT, true)?
      .visit_field::<::flatbuffers::ForwardsUOffset<Certificate>>("certificate", Self::VT_CERTIFICATE, false)?
+     .visit_field::<::flatbuffers::ForwardsUOffset<Patterns>>("patterns", Self::VT_PATTERNS, false)?
      .finish();
     Ok(())
   }
@@ -558,6 +858,7 @@ pub struct FrameArgs<'a> {
     pub upper: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u32>>>,
     pub weight: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, f64>>>,
     pub certificate: Option<::flatbuffers::WIPOffset<Certificate<'a>>>,
+    pub patterns: Option<::flatbuffers::WIPOffset<Patterns<'a>>>,
 }
 impl<'a> Default for FrameArgs<'a> {
   #[inline]
@@ -586,6 +887,7 @@ impl<'a> Default for FrameArgs<'a> {
       upper: None, // required field
       weight: None, // required field
       certificate: None,
+      patterns: None,
     }
   }
 }
@@ -688,6 +990,10 @@ impl<'a: 'b, 'b, A: ::flatbuffers::Allocator + 'a> FrameBuilder<'a, 'b, A> {
     self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<Certificate>>(Frame::VT_CERTIFICATE, certificate);
   }
   #[inline]
+  pub fn add_patterns(&mut self, patterns: ::flatbuffers::WIPOffset<Patterns<'b >>) {
+    self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<Patterns>>(Frame::VT_PATTERNS, patterns);
+  }
+  #[inline]
   pub fn new(_fbb: &'b mut ::flatbuffers::FlatBufferBuilder<'a, A>) -> FrameBuilder<'a, 'b, A> {
     let start = _fbb.start_table();
     FrameBuilder {
@@ -746,6 +1052,7 @@ impl ::core::fmt::Debug for Frame<'_> {
       ds.field("upper", &self.upper());
       ds.field("weight", &self.weight());
       ds.field("certificate", &self.certificate());
+      ds.field("patterns", &self.patterns());
       ds.finish()
   }
 }
