@@ -8,6 +8,7 @@ use polder::pipeline::build;
 use polder::pipeline::job::CELL_M;
 use polder::pipeline::job::CORNER_DEG;
 use polder::pipeline::job::Job;
+use polder::pipeline::job::MATCH_SIDES;
 use polder::pipeline::job::SEAM_BUDGET_QUADS;
 use std::path::Path;
 use std::process::Command;
@@ -21,7 +22,10 @@ fn main() {
     let runs: Vec<[f64; 3]> = if words.iter().any(|it| it == "--smoke") {
         vec![[100.0, 20.0, 0.0]]
     } else if numbers.len() >= 3 {
-        numbers.chunks_exact(3).map(|it| [it[0], it[1], it[2]]).collect()
+        numbers
+            .chunks_exact(3)
+            .map(|it| [it[0], it[1], it[2]])
+            .collect()
     } else {
         vec![
             [1000.0, 10.0, 1.0],
@@ -41,7 +45,14 @@ fn main() {
 fn run(folder: &Path, lines: usize, size_m: f64, threads: usize) {
     let input = folder.join("city.geojson");
     let made = Command::new(env!("CARGO_BIN_EXE_polder"))
-        .args(["synth", "--quiet", "--force", "--lines", &lines.to_string(), "--out"])
+        .args([
+            "synth",
+            "--quiet",
+            "--force",
+            "--lines",
+            &lines.to_string(),
+            "--out",
+        ])
         .arg(&input)
         .status()
         .expect("the binary starts");
@@ -58,6 +69,7 @@ fn run(folder: &Path, lines: usize, size_m: f64, threads: usize) {
         cell_m: CELL_M,
         tile_m: None,
         corner_deg: CORNER_DEG,
+        match_sides: MATCH_SIDES,
         without: Vec::new(),
         seam_budget_quads: SEAM_BUDGET_QUADS,
         threads,
