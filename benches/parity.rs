@@ -73,6 +73,7 @@ fn row(name: &str, partition: &Partition, goals: &Goals) {
         worth: 0.0,
         rounds_max: 20,
         climb_max: 60,
+        gap_enough: 5e-4,
         neighbourhoods_max: 20,
     };
     let (made, seconds, bytes) = measured(partition, goals, &alone);

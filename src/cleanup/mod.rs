@@ -315,7 +315,7 @@ const WANTED: Wanted = Wanted {
     edge: 0.5,
     gap: 0.45,
     shares: [0.5, 0.9],
-    rounds: 12,
+    rounds: 8,
 };
 /// Zipping, closing and merging make work for each other; more rounds than this find hardly any.
 const ROUNDS_MAX: usize = 6;

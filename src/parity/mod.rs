@@ -142,6 +142,8 @@ pub struct Options {
     pub rounds_max: u32,
     /// T-joins that the bound of cost and price may take.
     pub climb_max: u32,
+    /// Gap of cost and price together at which the search for patterns ends.
+    pub gap_enough: f64,
     /// Neighbourhoods that HiGHS may improve.
     pub neighbourhoods_max: u32,
 }

@@ -36,9 +36,6 @@ const LAST_STEP: f64 = 0.02;
 /// Rounds of moves that mend the counts of one round of the climb.
 const MEND_ROUNDS: u32 = 3;
 
-/// Gap below which nothing is left to improve that a mesh would show.
-const GAP_ENOUGH: f64 = 5e-4;
-
 /// What the best multipliers prove.
 struct Proof {
     bound: i64,
@@ -71,6 +68,7 @@ pub fn fit_patterns(
             goals,
             rules: &rules,
             worth,
+            free,
             options,
             best,
             proof: None,
@@ -84,7 +82,7 @@ pub fn fit_patterns(
         best = climb.best;
         made.rounds = climb.rounds;
         let left = (best.total() - proof.bound) as f64;
-        if left > GAP_ENOUGH * (best.total() - free) as f64 {
+        if left > options.gap_enough * (best.total() - free) as f64 {
             made.improved = neighbourhoods::improve(
                 partition,
                 goals,
@@ -109,6 +107,8 @@ struct Climb<'a> {
     goals: &'a Goals,
     rules: &'a Rules,
     worth: i64,
+    /// What free rounding costs, units.
+    free: i64,
     options: &'a Options,
     best: Draft<'a>,
     proof: Option<Proof>,
@@ -129,7 +129,7 @@ impl Climb<'_> {
             let (bound, raised, slope) = self.look(&at)?;
             let most = self.best.total();
             let top = self.proof.as_ref().map_or(bound, |proof| proof.bound);
-            if top >= most {
+            if (most - top) as f64 <= self.options.gap_enough * (most - self.free) as f64 {
                 break;
             }
             idle = if raised { 0 } else { idle + 1 };

@@ -341,6 +341,7 @@ fn balance(
                 worth: job.match_sides,
                 rounds_max: 20,
                 climb_max: 60,
+                gap_enough: 0.02,
                 neighbourhoods_max: 20,
             },
         )

@@ -126,7 +126,8 @@ proptest! {
         let sizes = SizeWish::uniform(size, 2);
         let options = intervals::Options { corner_deg: 30.0, upper_ratio: 2.5, block_ratio: 1.25, };
         let goals = intervals::plan(&domain, &sizes, &arrangement, &partition, &options);
-        let limits = parity::Options { events_max: u64::MAX, nodes_max: 100, rows_max: 1000, worth: 0.0, rounds_max: 20, climb_max: 60, neighbourhoods_max: 20 };
+        let limits = parity::Options { events_max: u64::MAX, nodes_max: 100, rows_max: 1000, worth: 0.0, rounds_max: 20, climb_max: 60,
+        gap_enough: 5e-4, neighbourhoods_max: 20 };
         let balance = parity::balance(&partition, &goals, &limits).unwrap();
         parity::check::check(&partition, &goals, &balance).unwrap();
         let counts = &balance.counts;

@@ -25,6 +25,7 @@ const OPTIONS: Options = Options {
     worth: 0.0,
     rounds_max: 20,
     climb_max: 60,
+    gap_enough: 5e-4,
     neighbourhoods_max: 20,
 };
 
