@@ -25,9 +25,9 @@
 //! 8. Lines meet only where they come within the sum of their tolerances: those that are everywhere
 //!    farther apart keep their topology.
 //!
-//! On 18 real cases the 0.1 % quantile of edge length is .30 to .36 h, that of the distance from a
-//! node to an edge that is not its own .27 to .31 h; lines move by less than .2 to .25 h on 99 % of
-//! their length (up to .38 h where lines are denser than the mesh).
+//! On 18 real cases at two sizes each, 99 % of the line length lies within .13 to .31 h of its edges
+//! (below a quarter of the size but for the densest line work at the coarser size), and the 0.1 %
+//! quantile of the sides of the finished meshes is .17 to .61 h.
 //!
 //! # Needs
 //! An arrangement that is noded and clipped ([`noding::clip()`](crate::noding::clip())).
