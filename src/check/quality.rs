@@ -149,6 +149,8 @@ pub struct Quality {
     pub edge_over_size: Histogram,
     /// The same for edges between two nodes inside patches alone: open ground, no line near.
     pub edge_open_over_size: Histogram,
+    /// Of these, edges beside no cell that touches a line: at least a row away.
+    pub edge_far_over_size: Histogram,
     /// Hydraulic size (4 area / perimeter) of each cell over the size wished; bins of 0.001.
     pub hydraulic_over_size: Histogram,
     /// Hydraulic size of each cell, metres, least only (bins are relative to the default size).
@@ -255,6 +257,7 @@ impl<'a> Measuring<'a> {
                 angle_deg: Histogram::new(0.0, 360.0, 720),
                 edge_over_size: Histogram::new(0.0, 4.0, 800),
                 edge_open_over_size: Histogram::new(0.0, 4.0, 800),
+                edge_far_over_size: Histogram::new(0.0, 4.0, 800),
                 hydraulic_over_size: Histogram::new(0.0, 2.0, 2000),
                 hydraulic_min_m: f64::INFINITY,
                 area_m2: 0.0,
@@ -278,6 +281,7 @@ impl<'a> Measuring<'a> {
         let size_m = self.frame.size_m[patch.subdomain as usize];
         self.inside.clear();
         self.inside.resize(patch.nodes(), 0);
+        let beside = beside_lines(patch);
         let mut share = self.quality.methods[usize::from(patch.method).min(4)];
         for quad in patch.quads {
             let corners = quad.map(|node| places[node as usize]);
@@ -291,6 +295,9 @@ impl<'a> Measuring<'a> {
             for k in (0..4).filter(|&k| is_open[k] && is_open[(k + 1) % 4]) {
                 let length = shape.sides_m[k];
                 self.quality.edge_open_over_size.add(length / size_m);
+                if quad.iter().all(|&node| !beside[node as usize]) {
+                    self.quality.edge_far_over_size.add(length / size_m);
+                }
             }
             share.area_m2 += shape.area_m2;
             share.scaled_jacobian_sum += shape.scaled_jacobian;
@@ -392,4 +399,20 @@ fn keep(
     let at = list.partition_point(|it| measure(it) <= value);
     list.insert(at, place());
     list.truncate(WORST);
+}
+
+/// For each node of a patch, whether it is on the outline or in a cell with a node that is.
+fn beside_lines(patch: &PatchView) -> Vec<bool> {
+    let on_line = |node: u32| (node as usize) < patch.boundary.len();
+    let mut beside = vec![false; patch.nodes()];
+    for quad in patch
+        .quads
+        .iter()
+        .filter(|quad| quad.iter().any(|&it| on_line(it)))
+    {
+        for &node in quad {
+            beside[node as usize] = true;
+        }
+    }
+    beside
 }

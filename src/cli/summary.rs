@@ -154,6 +154,8 @@ fn quality(verdict: &Verdict) -> Value {
         "s_p01": q.hydraulic_over_size.quantile(0.001),
         "edge_open_p50": q.edge_open_over_size.quantile(0.5),
         "edge_open_p95": q.edge_open_over_size.quantile(0.95),
+        "edge_far_p50": q.edge_far_over_size.quantile(0.5),
+        "edge_far_p95": q.edge_far_over_size.quantile(0.95),
         "angle_min_deg": q.angle_deg.min,
         "angle_max_deg": q.angle_deg.max,
     })
