@@ -7,7 +7,6 @@ use crate::cleanup::graph::Graph;
 use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;
 use crate::domain::line::LineId;
-use crate::geometry::point::Point;
 use crate::geometry::point::Xy;
 use crate::noding::arrangement::Arrangement;
 use crate::noding::arrangement::Piece;
@@ -184,9 +183,8 @@ fn is_a_node(graph: &Graph, line: LineId, from_m: f64, to_m: f64) -> bool {
     graph.measure.visit_vertices(&piece, |p| way.push(p));
     way.push(graph.measure.point(line, to_m));
     let cell_m = graph.measure.grid().cell_m;
-    let [x, y] = [0, 1].map(|k| (way[0][k] / cell_m).round() as i32);
     let mut found = Vec::new();
-    let at = Point::new(x, y);
+    let at = graph.measure.on_grid(way[0]);
     (graph.index).near(at, at, limit / cell_m, &mut found);
     (found.iter())
         .flat_map(|&edge| graph.edges[edge as usize].ends)

@@ -7,7 +7,10 @@ use crate::cleanup::measure::to_segment;
 use crate::cleanup::separate::gap_m;
 use crate::cleanup::separate::join;
 use crate::cleanup::separate::unite;
+use crate::cleanup::steps::Step;
+use crate::cleanup::wedges::angle_deg;
 use crate::cleanup::wedges::sorted_star;
+use crate::geometry::predicates::orient;
 
 /// Which faces are closed, in shares of the local mesh size.
 #[derive(Clone, Copy, Debug)]
@@ -47,6 +50,9 @@ const LOOP_MAX: f64 = 4.0;
 
 /// Closes thin faces at `nodes`, the thinnest first, one step a face.
 pub(super) fn collapse_thin(graph: &mut Graph, thin: &Thin, nodes: &[u32]) {
+    if !graph.measure.does(Step::Collapse) {
+        return;
+    }
     let mut faces = thin_faces(graph, thin, nodes);
     faces.sort_by(|a, b| {
         let place = |face: &Face| graph.point(face.walk[0].1);
@@ -132,13 +138,12 @@ pub(super) fn leaving(graph: &Graph, edge: u32, node: u32) -> u32 {
 /// How many corners a walk has where it turns left.
 fn corners(graph: &Graph, walk: &[(u32, u32)]) -> usize {
     let n = walk.len();
-    let at = |k: usize| graph.metres(walk[k % n].1);
+    let node = |k: usize| walk[k % n].1;
     (0..n)
         .filter(|&k| {
-            let (a, o, b) = (at(k + n - 1), at(k), at(k + 1));
-            let (u, v) = ([o[0] - a[0], o[1] - a[1]], [b[0] - o[0], b[1] - o[1]]);
-            let (cross, dot) = (u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
-            cross.atan2(dot).to_degrees() > CORNER_DEG
+            let (a, o, b) = (node(k + n - 1), node(k), node(k + 1));
+            let turns_left = orient(graph.point(a), graph.point(o), graph.point(b)) > 0;
+            turns_left && 180.0 - angle_deg(graph, o, a, b) > CORNER_DEG
         })
         .count()
 }

@@ -193,6 +193,12 @@ impl<'a> Measure<'a> {
         best.1
     }
 
+    /// The grid point nearest to `p`.
+    pub(super) fn on_grid(&self, p: Xy) -> Point {
+        let [x, y] = p.map(|v| (v / self.grid().cell_m).round() as i32);
+        Point::new(x, y)
+    }
+
     /// `p` in metres.
     pub(super) fn metres(&self, p: Point) -> Xy {
         self.grid().local_m(p)

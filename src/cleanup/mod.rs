@@ -322,60 +322,40 @@ const ROUNDS_MAX: usize = 6;
 
 /// All steps, in order.
 fn make_room(graph: &mut Graph) {
-    simplify_if_wanted(graph, &FINE, &graph.nodes());
+    simplify::simplify(graph, &FINE, &graph.nodes());
     let least = graph.measure.min_edge;
     for pass in [&GENTLE, &FIRM, &LAST] {
         let narrow = Narrow {
             edge: pass.narrow.edge.max(least),
             ..pass.narrow
         };
-        separate_if_wanted(graph, &narrow, &graph.nodes());
+        separate::separate(graph, &narrow, &graph.nodes());
         let mut nodes = graph.nodes();
         for _ in 0..ROUNDS_MAX {
-            simplify_if_wanted(graph, &SMOOTH, &nodes);
+            simplify::simplify(graph, &SMOOTH, &nodes);
             let mark = graph.touched.len();
             wedges::zip_wedges(graph, &pass.zip, &nodes);
-            if graph.measure.does(Step::Collapse) {
-                collapse::collapse_thin(graph, &pass.thin, &nodes);
-            }
+            collapse::collapse_thin(graph, &pass.thin, &nodes);
             nodes = graph.nodes_since(mark);
             if nodes.is_empty() {
                 break;
             }
-            separate_if_wanted(graph, &narrow, &nodes);
+            separate::separate(graph, &narrow, &nodes);
             nodes = graph.nodes_since(mark);
         }
     }
-    let mark = graph.touched.len();
-    wedges::divide_wedges(graph, &GENTLE.zip, &graph.nodes());
-    relax_if_wanted(graph, &graph.nodes());
     let stuck = Narrow {
         edge: STUCK.edge.max(1.1 * least),
         ..STUCK
     };
-    separate_if_wanted(graph, &stuck, &graph.nodes());
-    simplify_if_wanted(graph, &SMOOTH, &graph.nodes_since(mark));
-    relax_if_wanted(graph, &graph.nodes_since(mark));
-}
-
-fn simplify_if_wanted(graph: &mut Graph, smooth: &Smooth, nodes: &[u32]) {
-    if graph.measure.does(Step::Simplify) {
-        simplify::simplify(graph, smooth, nodes);
-    }
-}
-
-fn separate_if_wanted(graph: &mut Graph, narrow: &Narrow, nodes: &[u32]) {
-    if graph.measure.does(Step::Separate) {
-        separate::separate(graph, narrow, nodes);
-    }
-}
-
-fn relax_if_wanted(graph: &mut Graph, nodes: &[u32]) {
     let wanted = Wanted {
-        edge: WANTED.edge.max(1.2 * graph.measure.min_edge),
+        edge: WANTED.edge.max(1.2 * least),
         ..WANTED
     };
-    if graph.measure.does(Step::Relax) {
-        relax::relax(graph, &wanted, nodes);
-    }
+    let mark = graph.touched.len();
+    wedges::divide_wedges(graph, &GENTLE.zip, &graph.nodes());
+    relax::relax(graph, &wanted, &graph.nodes());
+    separate::separate(graph, &stuck, &graph.nodes());
+    simplify::simplify(graph, &SMOOTH, &graph.nodes_since(mark));
+    relax::relax(graph, &wanted, &graph.nodes_since(mark));
 }

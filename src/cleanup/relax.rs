@@ -7,7 +7,7 @@ use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;
 use crate::cleanup::separate::gap_below_m;
 use crate::cleanup::separate::is_beside;
-use crate::geometry::point::Point;
+use crate::cleanup::steps::Step;
 use crate::geometry::point::Xy;
 
 /// What is wanted, in shares of the local mesh size.
@@ -30,6 +30,9 @@ const STILL: f64 = 0.005;
 
 /// Moves `nodes` one after the other, in rounds over those that are pushed.
 pub(super) fn relax(graph: &mut Graph, wanted: &Wanted, nodes: &[u32]) {
+    if !graph.measure.does(Step::Relax) {
+        return;
+    }
     let mut active = nodes.to_vec();
     let mut found = Vec::new();
     let mut around = Vec::new();
@@ -96,11 +99,10 @@ fn stays(graph: &Graph, wanted: &Wanted, node: u32) -> bool {
 /// Tries the whole step, then a half and a quarter.
 fn pushed(graph: &mut Graph, wanted: &Wanted, node: u32, push: Xy) -> bool {
     let at = graph.metres(node);
-    let cell_m = graph.measure.grid().cell_m;
     wanted.shares.iter().any(|&share| {
         [STEP, STEP / 2.0, STEP / 4.0].iter().any(|step| {
-            let [x, y] = [at[0] + step * push[0], at[1] + step * push[1]];
-            let p = Point::new((x / cell_m).round() as i32, (y / cell_m).round() as i32);
+            let place = [at[0] + step * push[0], at[1] + step * push[1]];
+            let p = graph.measure.on_grid(place);
             graph.shift(node, p, share)
         })
     })

@@ -11,6 +11,7 @@ use crate::cleanup::measure::RIM_RANK;
 use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;
 use crate::cleanup::operate::Bend;
+use crate::cleanup::steps::Step;
 use crate::geometry::point::Point;
 use crate::geometry::point::Xy;
 use crate::geometry::predicates::orient;
@@ -89,6 +90,9 @@ impl Queue {
 
 /// Closes all that is too narrow around `nodes`, and may be closed.
 pub(super) fn separate(graph: &mut Graph, narrow: &Narrow, nodes: &[u32]) {
+    if !graph.measure.does(Step::Separate) {
+        return;
+    }
     let mut queue = Queue {
         heap: BinaryHeap::new(),
         key: Vec::new(),
@@ -367,11 +371,7 @@ pub(super) fn join(graph: &mut Graph, node: u32, edge: u32, near: f64, share: f6
 
 /// Moves a node to `place`, and the edge too.
 fn land(graph: &mut Graph, node: u32, edge: u32, place: Xy, share: f64) -> Option<u32> {
-    let cell_m = graph.measure.grid().cell_m;
-    let p = Point::new(
-        (place[0] / cell_m).round() as i32,
-        (place[1] / cell_m).round() as i32,
-    );
+    let p = graph.measure.on_grid(place);
     let there = graph.bend(edge, Bend::At(p), share)?;
     if graph.merge(node, there, share) {
         return Some(there);

@@ -7,6 +7,7 @@ use crate::cleanup::graph::Graph;
 use crate::cleanup::importance::turn_deg;
 use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;
+use crate::cleanup::steps::Step;
 use crate::cleanup::wedges::angle_deg;
 use crate::geometry::point::Point;
 
@@ -30,6 +31,9 @@ pub(super) struct Smooth {
 
 /// Removes all nodes of degree two that `smooth` allows, of these and what they lead to.
 pub(super) fn simplify(graph: &mut Graph, smooth: &Smooth, nodes: &[u32]) {
+    if !graph.measure.does(Step::Simplify) {
+        return;
+    }
     let mut queue = BinaryHeap::new();
     for &node in nodes {
         push(graph, smooth, node, &mut queue);

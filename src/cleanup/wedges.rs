@@ -6,7 +6,6 @@ use crate::cleanup::measure::distance;
 use crate::cleanup::operate::Bend;
 use crate::cleanup::separate::join;
 use crate::cleanup::steps::Step;
-use crate::geometry::point::Point;
 use crate::geometry::point::Xy;
 use crate::geometry::predicates::by_angle;
 use crate::geometry::predicates::orient;
@@ -68,7 +67,6 @@ fn divide(graph: &mut Graph, zip: &Zip, wedge: &Wedge) {
         return;
     }
     let size = graph.size_at_m(wedge.hub);
-    let cell_m = graph.measure.grid().cell_m;
     let near = zip.gap * size / (2.0 * (wedge.angle_deg / 2.0).to_radians().sin());
     for end in [wedge.a, wedge.b] {
         let Some(mut rest) = graph.find(wedge.hub, end) else {
@@ -82,8 +80,8 @@ fn divide(graph: &mut Graph, zip: &Zip, wedge: &Wedge) {
         // from the far end: what is left of the arm stays at the hub
         for k in (1..=parts as u32).rev() {
             let t = f64::from(k) * size / length;
-            let [x, y] = [0, 1].map(|i| ((o[i] + t * (a[i] - o[i])) / cell_m).round() as i32);
-            let node = graph.bend(rest, Bend::At(Point::new(x, y)), zip.share);
+            let place = [0, 1].map(|i| o[i] + t * (a[i] - o[i]));
+            let node = graph.bend(rest, Bend::At(graph.measure.on_grid(place)), zip.share);
             if let Some(inner) = node.and_then(|node| graph.find(wedge.hub, node)) {
                 rest = inner;
             }
@@ -211,11 +209,8 @@ impl Arm {
 /// parts over the place `at_m[0]` along `way`.
 fn part(graph: &mut Graph, zip: &Zip, hub: u32, arms: [Arm; 2], way: Xy, at_m: [f64; 2]) -> bool {
     let o = graph.metres(hub);
-    let place = |graph: &Graph, way: Xy, at: f64| {
-        let cell_m = graph.measure.grid().cell_m;
-        let [x, y] = [0, 1].map(|k| ((o[k] + way[k] * at) / cell_m).round() as i32);
-        Point::new(x, y)
-    };
+    let place =
+        |graph: &Graph, way: Xy, at: f64| graph.measure.on_grid([0, 1].map(|k| o[k] + way[k] * at));
     let mut added = Vec::new();
     let ends = arms.map(|arm| {
         let edge = graph.find(hub, arm.end).expect("an arm is an edge");
