@@ -357,5 +357,7 @@ fn make_room(graph: &mut Graph) {
     relax::relax(graph, &wanted, &graph.nodes());
     separate::separate(graph, &stuck, &graph.nodes());
     simplify::simplify(graph, &SMOOTH, &graph.nodes_since(mark));
+    // two nodes that became one may have left a wedge between their long edges
+    wedges::divide_wedges(graph, &GENTLE.zip, &graph.nodes_since(mark));
     relax::relax(graph, &wanted, &graph.nodes_since(mark));
 }
