@@ -142,6 +142,10 @@ pub struct BuildArgs {
     /// five and six sides): 1 as much as one edge at 1.4 times its wished length. 0: nothing.
     #[arg(long)]
     pub match_sides: Option<f64>,
+    /// Narrow places are cut into blocks of one row by short seams ("rungs") up to this long, in
+    /// sizes; 0 for none. Default: 0.8.
+    #[arg(long)]
+    pub longest_rung: Option<f64>,
     /// Replace an existing output.
     #[arg(long)]
     pub force: bool,
