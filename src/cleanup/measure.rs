@@ -104,7 +104,8 @@ impl<'a> Measure<'a> {
         })
     }
 
-    fn is_closed(&self, line: LineId) -> bool {
+    /// True if a line ends where it starts.
+    pub(super) fn is_closed(&self, line: LineId) -> bool {
         let points = &self.domain.lines[line as usize].points;
         points.first() == points.last()
     }
