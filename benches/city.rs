@@ -70,6 +70,7 @@ fn run(folder: &Path, lines: usize, size_m: f64, threads: usize) {
         tile_m: None,
         corner_deg: CORNER_DEG,
         match_sides: MATCH_SIDES,
+        previous: None,
         without: Vec::new(),
         seam_budget_quads: SEAM_BUDGET_QUADS,
         threads,

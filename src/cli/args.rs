@@ -143,6 +143,9 @@ pub struct BuildArgs {
     /// Default: 1.2.
     #[arg(long)]
     pub match_sides: Option<f64>,
+    /// An earlier mesh of nearly the same lines: counts far from what changed stay as they were.
+    #[arg(long, value_name = "MESH")]
+    pub previous: Option<PathBuf>,
     /// Replace an existing output.
     #[arg(long)]
     pub force: bool,

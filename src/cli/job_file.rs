@@ -37,6 +37,7 @@ struct JobFile {
     tile: Option<f64>,
     seam_budget: Option<u32>,
     match_sides: Option<f64>,
+    previous: Option<PathBuf>,
     threads: Option<usize>,
 }
 
@@ -144,6 +145,7 @@ pub fn job(args: &BuildArgs) -> Result<Job, String> {
             .or(file.seam_budget)
             .unwrap_or(SEAM_BUDGET_QUADS),
         match_sides: (args.match_sides.or(file.match_sides)).unwrap_or(MATCH_SIDES),
+        previous: args.previous.clone().or(file.previous),
         threads: args.threads.or(file.threads).unwrap_or(0),
         force: args.force,
         resume: args.resume,
@@ -168,7 +170,7 @@ fn read(path: &Path) -> Result<JobFile, String> {
     let mut file: JobFile =
         toml::from_str(&text).map_err(|it| format!("{}: {it}", path.display()))?;
     let folder = path.parent().unwrap_or(Path::new("."));
-    for relative in [&mut file.input, &mut file.output] {
+    for relative in [&mut file.input, &mut file.output, &mut file.previous] {
         *relative = relative.take().map(|it| folder.join(it));
     }
     Ok(file)

@@ -175,6 +175,7 @@ fn bytes_of(
         // Small, so that seams are made.
         seam_budget_quads: 1500,
         match_sides: MATCH_SIDES,
+        previous: None,
         threads,
         force: false,
         resume: false,
