@@ -72,6 +72,7 @@ fn run(folder: &Path, lines: usize, size_m: f64, threads: usize) {
         corner_deg: CORNER_DEG,
         longest_rung: LONGEST_RUNG,
         match_sides: MATCH_SIDES,
+        previous: None,
         without: Vec::new(),
         seam_budget_quads: SEAM_BUDGET_QUADS,
         threads,

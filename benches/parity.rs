@@ -3,8 +3,9 @@
 //!
 //! `cargo bench --bench parity [-- LARGEST] [--million] [FOLDER.polder | CASE.geojson:SIZE_M]...`: synthetic
 //! networks with up to LARGEST sub-domains (default 100 000; `--smoke`: 1000; `--million` adds the
-//! million; 0: none), and the networks of meshes, finished or made here, their wishes scaled to 1 to 20
-//! intervals a curve. Prints the tables of `benches/README.md`.
+//! million; 0: none), and the networks of meshes, finished or made here: parity with wishes scaled to 1
+//! to 20 intervals a curve (not with `--built`), patterns as built, where weights fit the wishes. Prints
+//! the tables of `benches/README.md`.
 
 use highs::HighsSolutionStatus;
 use highs::RowProblem;
@@ -76,11 +77,17 @@ fn main() {
         let name = made
             .file_stem()
             .map_or("?".into(), |it| it.to_string_lossy());
+        let is_built = words.iter().any(|word| word == "--built");
         for intervals in [1.0, 2.0, 5.0, 10.0, 20.0] {
-            let (partition, goals) = network_of(&made, intervals);
+            let (partition, mut goals) = network_of(&made, Some(intervals));
+            goals.blocks.clear();
             let name = format!("{name}, {intervals} a curve");
-            row(&name, &partition, &goals, PLAIN_S[1]);
+            if !is_built {
+                row(&name, &partition, &goals, PLAIN_S[1]);
+            }
         }
+        let (partition, goals) = network_of(&made, None);
+        row(&format!("{name} as built"), &partition, &goals, PLAIN_S[1]);
     }
     let _ = std::fs::remove_dir_all(folder);
 }
@@ -104,6 +111,7 @@ fn build_case(case: &Path, size_m: f64, folder: &Path) -> PathBuf {
         tile_m: None,
         corner_deg: CORNER_DEG,
         match_sides: MATCH_SIDES,
+        previous: None,
         without: Vec::new(),
         seam_budget_quads: SEAM_BUDGET_QUADS,
         threads: 0,
@@ -360,18 +368,18 @@ fn cells(side: usize) -> (Partition, Goals) {
     (made.partition, made.goals)
 }
 
-/// The network of a finished mesh, its wishes scaled to so many intervals a curve on average.
-fn network_of(folder: &Path, intervals: f64) -> (Partition, Goals) {
+/// The network of a finished mesh, its wishes scaled to so many intervals a curve on average if asked.
+fn network_of(folder: &Path, intervals: Option<f64>) -> (Partition, Goals) {
     let mesh = Mesh::open(folder).expect("a finished mesh");
     let frame = mesh.frame();
     let curves = frame.left.len();
-    let scale = intervals * curves as f64 / frame.goal.iter().sum::<f64>();
+    let scale = intervals.map(|it| it * curves as f64 / frame.goal.iter().sum::<f64>());
     let mut made = Network::default();
     for curve in 0..curves {
-        let goal = (scale * frame.goal[curve]).max(0.5);
+        let goal = scale.map_or(frame.goal[curve], |it| (it * frame.goal[curve]).max(0.5));
         made.push(frame.left[curve], frame.right[curve], goal);
-        if frame.lower[curve] == frame.upper[curve] {
-            // A seam on the lattice stays fixed, at the count that keeps its parity.
+        if scale.is_none() || frame.lower[curve] == frame.upper[curve] {
+            // A seam on the lattice stays fixed at any scale, at the count that keeps its parity.
             made.goals.goal[curve] = frame.goal[curve];
             made.goals.lower[curve] = frame.lower[curve];
             made.goals.upper[curve] = frame.upper[curve];

@@ -2,8 +2,8 @@
 //! more than five sub-domains away are compared.
 //!
 //! `cargo bench --bench stability -- CASE.geojson[.gz] SIZE_M [MOVES] [MATCH_SIDES]...` prints a row for
-//! each worth of patterns and each way to build again, over MOVES lines (default 4, spread evenly over
-//! the file), each moved by itself. `--smoke` runs one move on a synthetic city.
+//! each worth of patterns, without and with the first mesh as `--previous`, and each of MOVES lines
+//! (default 4, spread evenly over the file), moved by itself. `--smoke` moves one of a synthetic city.
 
 use flate2::read::GzDecoder;
 use polder::chunk::reader::Mesh;
@@ -49,19 +49,25 @@ fn main() {
     };
     let city = parsed(&case);
     println!(
-        "| match sides | moved | far curves | bent | without twin | changed | the farthest | kept % |\n|---|---|---|---|---|---|---|---|"
+        "| match sides | --previous | moved | far curves | bent | without twin | changed | the farthest | kept % |\n|---|---|---|---|---|---|---|---|---|"
     );
     for worth in worths {
-        let before = made(&folder, "before", &city, size_m, worth);
-        let mut all = Tally::default();
-        for k in 0..moves {
-            let (line, moved) = with_a_line_moved(&city, k, moves, size_m);
-            let after = made(&folder, "after", &moved, size_m, worth);
-            let tally = compare(&before, &after, line);
-            tally.print(worth, &format!("feature {line}"));
-            all.add(&tally);
+        let before = made(&folder, "before", &city, size_m, worth, None);
+        for previous in [None, Some(&before)] {
+            let words = format!(
+                "{worth} | {}",
+                if previous.is_some() { "yes" } else { "no" }
+            );
+            let mut all = Tally::default();
+            for k in 0..moves {
+                let (line, moved) = with_a_line_moved(&city, k, moves, size_m);
+                let after = made(&folder, "after", &moved, size_m, worth, previous);
+                let tally = compare(&before, &after, line);
+                tally.print(&words, &format!("feature {line}"));
+                all.add(&tally);
+            }
+            all.print(&words, "all");
         }
-        all.print(worth, "all");
     }
     std::fs::remove_dir_all(&folder).expect("the temporary folder can be removed");
 }
@@ -110,7 +116,14 @@ fn with_a_line_moved(city: &Value, k: usize, of: usize, size_m: f64) -> (u32, Va
     (id as u32, moved)
 }
 
-fn made(folder: &Path, name: &str, city: &Value, size_m: f64, match_sides: f64) -> Mesh {
+fn made(
+    folder: &Path,
+    name: &str,
+    city: &Value,
+    size_m: f64,
+    match_sides: f64,
+    previous: Option<&Mesh>,
+) -> Mesh {
     let input = folder.join(format!("{name}.geojson"));
     std::fs::write(&input, city.to_string()).expect("room for the case");
     let job = Job {
@@ -126,6 +139,7 @@ fn made(folder: &Path, name: &str, city: &Value, size_m: f64, match_sides: f64) 
         tile_m: None,
         corner_deg: CORNER_DEG,
         match_sides,
+        previous: previous.map(|it| it.dir().to_path_buf()),
         without: Vec::new(),
         seam_budget_quads: SEAM_BUDGET_QUADS,
         threads: 0,
@@ -160,10 +174,10 @@ impl Tally {
         self.farthest = self.farthest.max(other.farthest);
     }
 
-    fn print(&self, worth: f64, name: &str) {
+    fn print(&self, words: &str, name: &str) {
         let kept = 100.0 * (1.0 - f64::from(self.changed + self.lost) / f64::from(self.far.max(1)));
         println!(
-            "| {worth} | {name} | {} | {} | {} | {} | {} | {kept:.3} |",
+            "| {words} | {name} | {} | {} | {} | {} | {} | {kept:.3} |",
             self.far, self.bent, self.lost, self.changed, self.farthest
         );
     }

@@ -147,6 +147,9 @@ pub struct BuildArgs {
     /// sizes; 0 for none. Default: 0.8.
     #[arg(long)]
     pub longest_rung: Option<f64>,
+    /// An earlier mesh of nearly the same lines: counts far from what changed stay as they were.
+    #[arg(long, value_name = "MESH")]
+    pub previous: Option<PathBuf>,
     /// Replace an existing output.
     #[arg(long)]
     pub force: bool,

@@ -39,6 +39,7 @@ struct JobFile {
     seam_budget: Option<u32>,
     longest_rung: Option<f64>,
     match_sides: Option<f64>,
+    previous: Option<PathBuf>,
     threads: Option<usize>,
 }
 
@@ -147,6 +148,7 @@ pub fn job(args: &BuildArgs) -> Result<Job, String> {
             .unwrap_or(SEAM_BUDGET_QUADS),
         longest_rung: (args.longest_rung.or(file.longest_rung)).unwrap_or(LONGEST_RUNG),
         match_sides: (args.match_sides.or(file.match_sides)).unwrap_or(MATCH_SIDES),
+        previous: args.previous.clone().or(file.previous),
         threads: args.threads.or(file.threads).unwrap_or(0),
         force: args.force,
         resume: args.resume,
@@ -171,7 +173,7 @@ fn read(path: &Path) -> Result<JobFile, String> {
     let mut file: JobFile =
         toml::from_str(&text).map_err(|it| format!("{}: {it}", path.display()))?;
     let folder = path.parent().unwrap_or(Path::new("."));
-    for relative in [&mut file.input, &mut file.output] {
+    for relative in [&mut file.input, &mut file.output, &mut file.previous] {
         *relative = relative.take().map(|it| folder.join(it));
     }
     Ok(file)

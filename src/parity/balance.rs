@@ -2,9 +2,13 @@
 
 use crate::intervals::goals::Goals;
 use crate::parity::cuts::Cuts;
+use crate::parity::draft::Draft;
+use crate::parity::draft::Places;
 use crate::parity::programme::COST_UNIT;
 use crate::parity::programme::total_units;
 use crate::parity::programme::units;
+use crate::parity::tilts::Rules;
+use crate::partition::subdomains::Partition;
 
 /// A count for each curve, with its certificate.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -64,6 +68,16 @@ pub struct Structure {
     pub multipliers: Vec<i64>,
     /// The proof, second part: odd sets of the programme that the multipliers tilt.
     pub cuts: Cuts,
+}
+
+impl Structure {
+    /// Counts again what other counts do to the patterns.
+    pub(crate) fn appraise(&mut self, partition: &Partition, goals: &Goals, counts: &[u32]) {
+        let (rules, places) = (Rules::of(goals), Places::of(partition, goals));
+        let draft = Draft::new(goals, &rules, &places, units(self.worth), counts.to_vec());
+        self.mapped = draft.mapped();
+        self.price = draft.price() as f64 * COST_UNIT;
+    }
 }
 
 impl Balance {

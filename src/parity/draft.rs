@@ -49,6 +49,8 @@ pub struct Draft<'a> {
     places: &'a Places,
     worth: i64,
     totals: Vec<[i64; 6]>,
+    /// What a move must gain for each curve that it changes; 0 unless counts should stay.
+    pub hurdle: i64,
     /// The counts.
     pub counts: Vec<u32>,
 }
@@ -75,6 +77,7 @@ impl<'a> Draft<'a> {
             places,
             worth,
             totals,
+            hurdle: 0,
             counts,
         }
     }
@@ -164,7 +167,7 @@ impl<'a> Draft<'a> {
             };
             self.change(curve, by);
             row.push(curve);
-            total += change;
+            total += change + self.hurdle;
             if total < best {
                 (best, best_len) = (total, row.len());
             }
@@ -227,8 +230,9 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// Sets the counts of `curves` if they are within bounds and that is cheaper; true if it did.
-    pub fn set_if_better(&mut self, curves: &[u32], counts: &[u32]) -> bool {
+    /// Sets the counts of `curves` if they are within bounds and that is cheaper by more than `by`;
+    /// true if it did.
+    pub fn set_if_cheaper(&mut self, curves: &[u32], counts: &[u32], by: i64) -> bool {
         let before: Vec<u32> = curves
             .iter()
             .map(|&curve| self.counts[curve as usize])
@@ -243,7 +247,7 @@ impl<'a> Draft<'a> {
             }
             self.change(curve, by);
         }
-        if possible && change < 0 {
+        if possible && change < -by {
             return true;
         }
         for (&curve, &count) in curves.iter().zip(&before) {

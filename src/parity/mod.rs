@@ -43,6 +43,7 @@
 //!    rows HiGHS has no chance: the plain form does not see parity (at 10 000 sub-domains it finds
 //!    nothing in two minutes); with rows found in rounds it stalls a few thousandths short.
 //! 6. `structure`: cost and the patterns' price together; see below.
+//! 7. `keep`, if there are earlier counts: they stay where others are hardly better; see below.
 //!
 //! If the limit of work ends step 2 early, its radii are still feasible duals: the bound stays
 //! valid, a spanning forest over the edges of least slack gives the choice, the gap is reported.
@@ -93,8 +94,13 @@
 //! One moved line changes few counts far away, but not none: the optimum is one of the whole city, and
 //! where half of all sub-domains are odd a chain of exchanges that cost next to nothing may go far.
 //! Of real curves more than five sub-domains away from a moved line about one in a thousand changes
-//! (bench `stability`). Nothing else carries: goals and costs are local (`intervals`), queues break
-//! ties by sub-domain, and patterns meet only through curves that they share.
+//! (bench `stability`), four with patterns, whose multipliers share one stride. Goals and costs are
+//! local (`intervals`).
+//!
+//! With earlier counts ([`balance_near`]) each curve keeps its own or takes the best one, and a change
+//! has a price of 0.02: one more T-join, on the curves whose parity differs (`keep`). So no chain goes
+//! far for nothing; what is chosen costs at most 0.02 a kept curve more than the best, and `bound` says
+//! how near it is.
 //!
 //! # Sources
 //! Edmonds and Johnson (1973) for T-joins; Higgott and Gidney (2023) for sparse blossom; Held and Karp
@@ -115,6 +121,7 @@ use crate::parity::matching::Matching;
 use crate::parity::programme::COST_UNIT;
 use crate::parity::programme::Programme;
 use crate::parity::programme::total_units;
+use crate::parity::programme::units;
 use crate::partition::subdomains::Partition;
 
 pub mod balance;
@@ -125,6 +132,7 @@ pub mod error;
 mod flood;
 pub mod graph;
 mod join;
+mod keep;
 mod matching;
 mod neighbourhoods;
 pub mod programme;
@@ -148,7 +156,8 @@ pub struct Options {
     pub worth: f64,
     /// Rounds of moves for the sake of patterns; most pay in the first three.
     pub rounds_max: u32,
-    /// T-joins that the bound of cost and price may take.
+    /// T-joins that the bound of cost and price may take until the gap is enough; five times as many
+    /// until it is twice that.
     pub climb_max: u32,
     /// Gap of cost and price together at which the search for patterns ends.
     pub gap_enough: f64,
@@ -158,6 +167,17 @@ pub struct Options {
 
 /// Chooses the number of intervals of every curve.
 pub fn balance(partition: &Partition, goals: &Goals, options: &Options) -> Result<Balance, Error> {
+    balance_near(partition, goals, &[], options)
+}
+
+/// The same near earlier counts: those of `previous` stay where others are hardly better. Empty, or
+/// one a curve.
+pub fn balance_near(
+    partition: &Partition,
+    goals: &Goals,
+    previous: &[Option<u32>],
+    options: &Options,
+) -> Result<Balance, Error> {
     let programme = Programme::new(partition, goals, None)?;
     let base = programme.base;
     let graph = &programme.graph;
@@ -188,7 +208,12 @@ pub fn balance(partition: &Partition, goals: &Goals, options: &Options) -> Resul
     balance.proven = optimum == bound;
     balance.odd_subdomains = graph.odd.iter().filter(|odd| **odd).count() as u32;
     balance.cuts = join.cuts;
-    let (structure, counts) = structure::fit_patterns(partition, goals, base, even, options)?;
+    let (mut structure, mut counts) =
+        structure::fit_patterns(partition, goals, base, even, options)?;
+    if !previous.is_empty() {
+        counts = keep::keep(partition, goals, units(options.worth), &counts, previous);
+        structure.appraise(partition, goals, &counts);
+    }
     balance.structure = structure;
     Ok(balance.with_counts(goals, counts))
 }

@@ -183,5 +183,5 @@ fn accept(partition: &Partition, best: &mut Draft, place: &Neighbourhood, found:
             }
         }
     }
-    odd.is_empty() && best.set_if_better(&place.curves, found)
+    odd.is_empty() && best.set_if_cheaper(&place.curves, found, 0)
 }

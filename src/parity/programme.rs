@@ -214,7 +214,8 @@ impl Halves {
     }
 }
 
-fn node_of(side: SubdomainId) -> u32 {
+/// The node of a sub-domain, or of the outside.
+pub fn node_of(side: SubdomainId) -> u32 {
     if side == subdomains::OUTSIDE {
         OUTSIDE
     } else {

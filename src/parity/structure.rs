@@ -34,6 +34,9 @@ const FIRST_STEP: f64 = 0.7;
 /// Step at which the climb ends.
 const LAST_STEP: f64 = 0.02;
 
+/// After `climb_max` rounds twice the gap is enough, and so many times as many rounds may be made for it.
+const LONGER: u32 = 5;
+
 /// Rounds of moves that mend the counts of one round of the climb.
 const MEND_ROUNDS: u32 = 3;
 
@@ -124,12 +127,17 @@ impl Climb<'_> {
         let metric = self.metric(&start.stride);
         let mut direction = vec![0.0; rows];
         let (mut step, mut idle) = (FIRST_STEP, 0);
-        while step > LAST_STEP && self.rounds < self.options.climb_max.max(1) {
+        let most_rounds = LONGER * self.options.climb_max.max(1);
+        while step > LAST_STEP && self.rounds < most_rounds {
             self.rounds += 1;
             let (bound, raised, slope) = self.look(&at)?;
             let most = self.best.total();
             let top = self.proof.as_ref().map_or(bound, |proof| proof.bound);
-            if (most - top) as f64 <= self.options.gap_enough * (most - self.free) as f64 {
+            let enough = match self.rounds < self.options.climb_max {
+                true => self.options.gap_enough,
+                false => 2.0 * self.options.gap_enough,
+            };
+            if (most - top) as f64 <= enough * (most - self.free) as f64 {
                 break;
             }
             idle = if raised { 0 } else { idle + 1 };

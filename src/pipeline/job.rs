@@ -43,6 +43,8 @@ pub struct Job {
     /// What it is worth that the counts of a few-sided sub-domain fit a pattern, in the unit of what
     /// counts cost; 0 for parity alone.
     pub match_sides: f64,
+    /// An earlier mesh of nearly the same lines, whose counts are kept where others are hardly better.
+    pub previous: Option<PathBuf>,
     /// Worker threads; 0 for as many as there are cores.
     pub threads: usize,
     /// Replace an existing output.

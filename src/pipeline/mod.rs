@@ -27,6 +27,7 @@ pub mod ordered;
 pub mod outcome;
 mod patches;
 pub mod plan;
+mod previous;
 pub mod progress;
 pub mod refusal;
 mod report;

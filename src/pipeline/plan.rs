@@ -2,6 +2,7 @@
 
 use crate::boundary;
 use crate::boundary::walks::Site;
+use crate::chunk::reader::Mesh;
 use crate::cleanup;
 use crate::cleanup::changes::Change;
 use crate::cleanup::changes::Dropped;
@@ -24,6 +25,7 @@ use crate::parity::balance::Balance;
 use crate::partition::subdomains::Partition;
 use crate::pipeline::error::Error;
 use crate::pipeline::job::Job;
+use crate::pipeline::previous;
 use crate::pipeline::progress::Stopwatch;
 use crate::pipeline::refusal;
 use crate::pipeline::tiles;
@@ -114,10 +116,18 @@ pub(super) fn plan(
     })
 }
 
-/// Whose plan it is: the version, the input's bytes, the options that change the result.
+/// Whose plan it is: the version, the input's bytes, the options that change the result, the mesh before.
 pub(super) fn key(job: &Job, domain: &Domain) -> String {
     let version = env!("CARGO_PKG_VERSION");
-    format!("{version} {:016x} {}", domain.digest, job.echo())
+    let of = |mesh: Mesh| {
+        mesh.index()
+            .files
+            .iter()
+            .map(|it| it.2)
+            .collect::<Vec<u32>>()
+    };
+    let before = (job.previous.as_ref()).and_then(|mesh| Mesh::open(mesh).ok().map(of));
+    format!("{version} {:016x} {} {before:?}", domain.digest, job.echo())
 }
 
 /// Phases A and B.
@@ -349,8 +359,16 @@ fn balance(
             block_ratio: 1.25,
         };
         let goals = intervals::plan(domain, sizes, arrangement, partition, &options);
-        let balance = parity::balance(partition, &goals, &parity_options(job.match_sides))
-            .map_err(|it| refusal::explain(it, domain, arrangement, partition))?;
+        let before = match &job.previous {
+            Some(mesh) => {
+                let mesh = Mesh::open(mesh).map_err(|it| Error::Job(format!("previous: {it}")))?;
+                previous::counts(&mesh, domain, arrangement, partition)
+            }
+            None => Vec::new(),
+        };
+        let balance =
+            parity::balance_near(partition, &goals, &before, &parity_options(job.match_sides))
+                .map_err(|it| refusal::explain(it, domain, arrangement, partition))?;
         let fit = &balance.structure;
         let note = format!(
             "gap {:.4} %; {} of {} blocks fit a pattern ({} without the wish), gap {:.2} %",

@@ -117,6 +117,54 @@ fn the_way_through_on_a_small_city() {
 }
 
 #[test]
+fn an_earlier_mesh_keeps_its_counts() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    city(at);
+    let build = |out: &str, more: &[&str]| {
+        let words = [
+            &[
+                "build",
+                "city.geojson",
+                "--size",
+                "20",
+                "--quiet",
+                "--out",
+                out,
+            ],
+            more,
+        ]
+        .concat();
+        let built = polder(at, &words);
+        assert!(
+            built.status.success(),
+            "{}",
+            String::from_utf8_lossy(&built.stderr)
+        );
+        fs::read(at.join(out).join("frame")).unwrap()
+    };
+    let first = build("first.polder", &[]);
+    assert_eq!(
+        build("again.polder", &["--previous", "first.polder"]),
+        first
+    );
+    // Without patterns other counts are best, but these were hardly worse.
+    let alone = build("alone.polder", &["--match-sides", "0"]);
+    let near = build(
+        "near.polder",
+        &["--match-sides", "0", "--previous", "first.polder"],
+    );
+    assert_ne!(near, alone);
+    let words = ["build", "city.geojson", "--size", "20", "--out", "n.polder"];
+    refused(
+        at,
+        &[&words[..], &["--previous", "no.polder"]].concat(),
+        2,
+        &["no.polder"],
+    );
+}
+
+#[test]
 fn a_job_file_does_the_same_as_flags_and_unknown_keys_are_refused() {
     let folder = TempDir::new().unwrap();
     let at = folder.path();

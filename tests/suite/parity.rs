@@ -458,20 +458,70 @@ fn one_moved_line_changes_few_counts_far_away() {
     for &curve in g.blocks[moved].sides.iter().flatten() {
         h.goal[curve as usize] += 1.0;
     }
-    let steps = steps_from(&p, moved as u32);
     let [before, after] = [&g, &h].map(|goals| parity::balance(&p, goals, &OPTIONS).unwrap());
-    let is_far = |side: u32| side == OUTSIDE || steps[side as usize] > 5;
+    let both = [&before.counts[..], &after.counts];
+    let (changed, far) = changed_far(&p, moved as u32, 5, both);
+    assert!(
+        changed * 100 <= 3 * far,
+        "{changed} of {far} curves more than five sub-domains away changed"
+    );
+}
+
+/// Counts more than `near` sub-domains away from `moved` that differ, and how many there are.
+fn changed_far(p: &Partition, moved: u32, near: u32, counts: [&[u32]; 2]) -> (usize, usize) {
+    let steps = steps_from(p, moved);
+    let is_far = |side: u32| side == OUTSIDE || steps[side as usize] > near;
     let far: Vec<usize> = (0..p.curves.len())
         .filter(|&id| is_far(p.curves[id].left) && is_far(p.curves[id].right))
         .collect();
-    let changed = (far.iter())
-        .filter(|&&id| before.counts[id] != after.counts[id])
-        .count();
-    assert!(
-        changed * 100 <= 3 * far.len(),
-        "{changed} of {} curves more than five sub-domains away changed",
-        far.len()
-    );
+    let changed = far.iter().filter(|&&id| counts[0][id] != counts[1][id]);
+    (changed.count(), far.len())
+}
+
+#[test]
+fn with_earlier_counts_one_moved_line_changes_none_far_away() {
+    let (p, g) = blocks(50, 6);
+    for worth in [0.0, 1.2] {
+        let options = Options {
+            worth,
+            climb_max: 8,
+            gap_enough: 0.01,
+            ..OPTIONS
+        };
+        let before = parity::balance(&p, &g, &options).unwrap();
+        let earlier: Vec<Option<u32>> = before.counts.iter().copied().map(Some).collect();
+        let again = parity::balance_near(&p, &g, &earlier, &options).unwrap();
+        assert_eq!(again.counts, before.counts, "nothing moved");
+        for moved in [25 * 50 + 25, 7 * 50 + 40] {
+            let mut h = g.clone();
+            for &curve in g.blocks[moved].sides.iter().flatten() {
+                h.goal[curve as usize] += 1.0;
+            }
+            let after = parity::balance_near(&p, &h, &earlier, &options).unwrap();
+            check(&p, &h, &after).unwrap();
+            let both = [&before.counts[..], &after.counts];
+            let (changed, far) = changed_far(&p, moved as u32, 5, both);
+            assert!(changed * 1000 <= far, "{worth}: {changed} of {far} changed");
+            // What it costs to stay is little: within a hundredth of what parity and patterns cost.
+            let free = parity::balance(&p, &h, &options).unwrap();
+            let total = |it: &Balance| it.objective + it.structure.price;
+            assert!(total(&after) - total(&free) < 0.01 * (total(&free) - free.base));
+        }
+    }
+}
+
+#[test]
+fn earlier_counts_that_are_odd_or_out_of_bounds_do_no_harm() {
+    let mut dice = Dice(5);
+    for seed in 0..10 {
+        let (p, g) = city(8, seed);
+        let earlier: Vec<Option<u32>> = (0..p.curves.len())
+            .map(|_| (dice.roll() < 0.8).then(|| dice.below(9) as u32))
+            .collect();
+        let made = parity::balance_near(&p, &g, &earlier, &OPTIONS).unwrap();
+        check(&p, &g, &made).unwrap();
+        assert!(made.proven, "the bound is that of parity alone");
+    }
 }
 
 #[test]

@@ -177,6 +177,7 @@ fn bytes_of(
         seam_budget_quads: 1500,
         longest_rung: LONGEST_RUNG,
         match_sides: MATCH_SIDES,
+        previous: None,
         threads,
         force: false,
         resume: false,
