@@ -180,7 +180,7 @@ fn is_a_node(graph: &Graph, line: LineId, from_m: f64, to_m: f64) -> bool {
     }
     let mut way: Vec<Xy> = vec![graph.measure.point(line, from_m)];
     let piece = Piece { line, from_m, to_m };
-    graph.measure.visit_vertices(&piece, |p| way.push(p));
+    way.extend(graph.measure.vertices(&piece));
     way.push(graph.measure.point(line, to_m));
     let cell_m = graph.measure.grid().cell_m;
     let mut found = Vec::new();
@@ -204,7 +204,7 @@ fn displacements(graph: &Graph) -> Tally {
             let size_m = graph.measure.size_m[piece.line as usize];
             let (low, high) = (piece.from_m.min(piece.to_m), piece.from_m.max(piece.to_m));
             let mut way: Vec<Xy> = vec![graph.measure.point(piece.line, low)];
-            graph.measure.visit_vertices(piece, |p| way.push(p));
+            way.extend(graph.measure.vertices(piece));
             way.push(graph.measure.point(piece.line, high));
             for pair in way.windows(2) {
                 let [u, v] = [pair[0], pair[1]];

@@ -66,22 +66,26 @@ const FAR: f64 = 0.2;
 /// Where the line that is farthest away pulls a node, metres.
 fn homeward_m(graph: &Graph, node: u32) -> Xy {
     let at = graph.metres(node);
-    let mut farthest = (0.0, [0.0; 2]);
+    let far = FAR * graph.size_at_m(node);
+    let (mut away, mut way) = (far, [0.0; 2]);
     for &edge in &graph.star[node as usize] {
-        for piece in &graph.edges[edge as usize].pieces {
-            let (low, high) = (piece.from_m.min(piece.to_m), piece.from_m.max(piece.to_m));
-            let station = graph.measure.nearest(piece.line, low, high, at);
+        let it = &graph.edges[edge as usize];
+        for piece in &it.pieces {
+            let (here, there) = match it.ends[0] == node {
+                true => (piece.from_m, piece.to_m),
+                false => (piece.to_m, piece.from_m),
+            };
+            // no stretch is farther away than its end
+            if distance(at, graph.measure.point(piece.line, here)) <= away {
+                continue;
+            }
+            let station = (graph.measure).nearest(piece.line, here.min(there), here.max(there), at);
             let place = graph.measure.point(piece.line, station);
-            let away = distance(at, place);
-            if away > farthest.0 {
-                farthest = (away, [place[0] - at[0], place[1] - at[1]]);
+            if distance(at, place) > away {
+                away = distance(at, place);
+                way = [place[0] - at[0], place[1] - at[1]];
             }
         }
-    }
-    let (away, way) = farthest;
-    let far = FAR * graph.size_at_m(node);
-    if away <= far {
-        return [0.0; 2];
     }
     way.map(|it| it * (1.0 - far / away))
 }

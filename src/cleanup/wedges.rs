@@ -120,7 +120,7 @@ pub(super) fn wedges(graph: &Graph, below_deg: f64, nodes: &[u32]) -> Vec<Wedge>
 }
 
 /// The edges of a node, counter-clockwise.
-pub(super) fn sorted_star(graph: &Graph, node: u32) -> Vec<u32> {
+fn sorted_star(graph: &Graph, node: u32) -> Vec<u32> {
     let at = graph.point(node);
     let away = |edge: u32| {
         let end = graph.point(graph.edges[edge as usize].other(node));
