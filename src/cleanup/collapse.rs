@@ -231,7 +231,7 @@ fn drop_loop(graph: &mut Graph, face: &Face) -> bool {
     }
     let at = graph.point(face.walk[0].1);
     for &(edge, _) in &face.walk {
-        if let Some(edge) = graph.current(edge) {
+        if graph.is_there(edge) {
             graph.delete(edge, Reason::SmallLoop);
         }
     }

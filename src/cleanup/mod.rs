@@ -69,6 +69,7 @@
 //! Crossings (`noding`), sub-domains and curves (`partition`), chords of curves (none: nodes are
 //! mesh nodes, so tolerance is used up here).
 
+mod attempt;
 mod audit;
 pub mod changes;
 pub mod check;
