@@ -50,6 +50,8 @@ struct Vertex {
 pub(super) const RIM_RANK: f64 = 1e13;
 /// Added to the rank of held lines.
 const HOLD_RANK: f64 = 1e12;
+/// A node this near to a corner of its line, along the line, stands for it, mesh sizes.
+const AT_CORNER: f64 = 0.1;
 /// What one step of priority counts: more than any line is long, metres.
 const PRIORITY_RANK: f64 = 1e9;
 
@@ -114,7 +116,8 @@ impl<'a> Measure<'a> {
         })
     }
 
-    fn is_closed(&self, line: LineId) -> bool {
+    /// True if a line ends where it starts.
+    pub(super) fn is_closed(&self, line: LineId) -> bool {
         let points = &self.domain.lines[line as usize].points;
         points.first() == points.last()
     }
@@ -143,6 +146,35 @@ impl<'a> Measure<'a> {
         let k = vertices.partition_point(|it| it.station_m <= station_m);
         let k = k.clamp(1, vertices.len() - 1);
         between(vertices[k - 1], vertices[k], station_m)
+    }
+
+    /// True if the line as read turns there at a corner: by more than the corner angle, between
+    /// segments that are long enough to be edges, within [`AT_CORNER`] of the station.
+    pub(super) fn is_corner(&self, line: LineId, station_m: f64) -> bool {
+        let stations = self.stations(line);
+        let last = stations.len() - 1;
+        let size_m = self.size_m[line as usize];
+        let next = stations.partition_point(|&s| s < station_m).min(last);
+        let before = next.saturating_sub(1);
+        let k = if station_m - stations[before] < stations[next] - station_m {
+            before
+        } else {
+            next
+        };
+        if (stations[k] - station_m).abs() > AT_CORNER * size_m {
+            return false;
+        }
+        let (before, after) = match k {
+            _ if 0 < k && k < last => (k - 1, k + 1),
+            _ if self.is_closed(line) => (last - 1, 1),
+            _ => return false,
+        };
+        let [a, o, b] = [before, k, after].map(|k| self.vertex(line, k));
+        let (u, v) = ([o[0] - a[0], o[1] - a[1]], [b[0] - o[0], b[1] - o[1]]);
+        let (cross, dot) = (u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
+        let least_m = self.min_edge * size_m;
+        distance(a, o).min(distance(o, b)) >= least_m
+            && cross.abs().atan2(dot).to_degrees() > self.corner_deg
     }
 
     /// Largest distance between the stretch and the edge `a b`, with the stretch's ends held

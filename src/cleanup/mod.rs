@@ -16,7 +16,8 @@
 //!    lines and its length, and so is every gap between a node and an edge that is narrower, and
 //!    every angle below [`SHARP_DEG`] degrees.
 //!    Simplification leaves junctions as nodes, and corners that turn by more than
-//!    [`Options::corner_deg`] between edges of at least that length; other steps may merge them.
+//!    [`Options::corner_deg`] between edges of at least that length, in the line as read or as it
+//!    is by now; other steps may merge them with what is near.
 //! 6. Same input, same bits, in whatever order, or at once, districts are cleaned. A tolerance of
 //!    zero changes nothing.
 //! 7. What a kind of line asks for ([`rules`]) holds in every step: its own tolerance, no move
@@ -358,5 +359,7 @@ fn make_room(graph: &mut Graph) {
     relax::relax(graph, &wanted, &graph.nodes());
     separate::separate(graph, &stuck, &graph.nodes());
     simplify::simplify(graph, &SMOOTH, &graph.nodes_since(mark));
+    // two nodes that became one may have left a wedge between their long edges
+    wedges::divide_wedges(graph, &GENTLE.zip, &graph.nodes_since(mark));
     relax::relax(graph, &wanted, &graph.nodes_since(mark));
 }

@@ -295,8 +295,7 @@ impl Graph<'_> {
     }
 
     fn reason_for(&self, line: u32) -> Reason {
-        let points = &self.measure.domain.lines[line as usize].points;
-        if points.first() == points.last() {
+        if self.measure.is_closed(line) {
             Reason::SmallLoop
         } else {
             Reason::ShortEnd

@@ -92,7 +92,7 @@ fn deviation(graph: &Graph, smooth: &Smooth, node: u32) -> Option<f64> {
     let size = graph.size_at_m(node);
     let (p, q) = (graph.metres(a), graph.metres(b));
     let own = to_segment(graph.metres(node), p, q).0;
-    let turns = turn_deg(graph, node, |_| true).is_some_and(|turn| turn > graph.measure.corner_deg);
+    let turns = turns(graph, node);
     if turns && star.iter().all(|&edge| is_long(graph, edge)) {
         return None;
     }
@@ -114,6 +114,16 @@ fn deviation(graph: &Graph, smooth: &Smooth, node: u32) -> Option<f64> {
         }
     }
     Some(worst / size)
+}
+
+/// True at a corner: of the way over the node as it is now, or of a line as read. Without the
+/// second, a corner would go whose neighbours went before.
+fn turns(graph: &Graph, node: u32) -> bool {
+    turn_deg(graph, node, |_| true).is_some_and(|turn| turn > graph.measure.corner_deg)
+        || (graph.edges[graph.star[node as usize][0] as usize]
+            .pieces_from(node)
+            .iter())
+        .any(|piece| graph.measure.is_corner(piece.line, piece.from_m))
 }
 
 /// True if an edge may stay as it is.

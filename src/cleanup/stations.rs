@@ -94,12 +94,19 @@ impl Graph<'_> {
         None
     }
 
-    /// True if all stretched pieces are within `share` of their tolerance.
+    /// True if all stretched pieces are within `share` of their tolerance, and no lost one is longer
+    /// than the mesh size, but loops: those may be small and long.
     pub(super) fn absorbed_fits(&self, absorbed: &Absorbed, share: f64) -> bool {
-        absorbed.stretched.iter().all(|(edge, _, piece)| {
+        let stretched = absorbed.stretched.iter().all(|(edge, _, piece)| {
             let (a, b) = self.ends_m(*edge);
             self.measure.fits(piece, a, b, share)
-        })
+        });
+        stretched
+            && absorbed.lost.iter().all(|piece| {
+                let length_m = (piece.to_m - piece.from_m).abs();
+                length_m <= self.measure.size_m[piece.line as usize]
+                    || self.measure.is_closed(piece.line)
+            })
     }
 
     /// Finds a home for a stretch that lost its edge: the edge at `w` that it fits best. A line

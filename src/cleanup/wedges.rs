@@ -81,7 +81,8 @@ fn divide(graph: &mut Graph, zip: &Zip, wedge: &Wedge) {
         for k in (1..=parts as u32).rev() {
             let t = f64::from(k) * size / length;
             let place = [0, 1].map(|i| o[i] + t * (a[i] - o[i]));
-            let node = graph.bend(rest, Bend::At(graph.measure.on_grid(place)), zip.share);
+            // the arm stays where it is, however much of the tolerance it has used
+            let node = graph.bend(rest, Bend::At(graph.measure.on_grid(place)), 1.0);
             if let Some(inner) = node.and_then(|node| graph.find(wedge.hub, node)) {
                 rest = inner;
             }

@@ -70,7 +70,9 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         "min_edge_m": job.min_edge() * job.size_m,
         "length_m": outcome.length_m,
         "length_dropped_m": outcome.length_dropped_m,
+        "length_small_loops_m": outcome.length_loops_m,
         "length_shrunk_m": outcome.length_shrunk_m,
+        "dropped_longest_over_size": outcome.dropped_longest_over_size,
         "sharp_angles_before": outcome.sharp_angles[0],
         "sharp_angles_after": outcome.sharp_angles[1],
         "ilp_gap": outcome.ilp_gap,
@@ -111,7 +113,7 @@ fn first_lines(job: &Job, outcome: &Outcome) -> String {
         "{}: {} quads in {} sub-domains, {:.1} s, {:.0} MB\n\
          scaled Jacobian: mean {:.3}, 1 % {:.2}, least {:.3}; irregular nodes {:.1} %\n\
          lines moved at most {:.2} m (99 % below {:.2} m, {:.3} of the size); \
-         dropped {:.1} m of {:.0} m, {:.1} m became nodes\n\
+         dropped {:.1} m of {:.0} m, and {:.1} m of small loops; {:.1} m became nodes\n\
          parity: gap {:.4} %; {} of {} few-sided sub-domains fit a pattern, gap {:.2} %\n",
         job.output.display(),
         q.scaled_jacobian.count,
@@ -125,8 +127,9 @@ fn first_lines(job: &Job, outcome: &Outcome) -> String {
         outcome.displacement_max_m,
         outcome.displacement_p99_m,
         outcome.displacement_p99_over_size,
-        outcome.length_dropped_m,
+        outcome.length_dropped_m - outcome.length_loops_m,
         outcome.length_m,
+        outcome.length_loops_m,
         outcome.length_shrunk_m,
         100.0 * outcome.ilp_gap,
         outcome.blocks[1],

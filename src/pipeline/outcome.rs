@@ -1,6 +1,7 @@
 //! What a build made and what a plan foresees, in numbers.
 
 use crate::check::verdict::Verdict;
+use crate::cleanup::changes::Dropped;
 use crate::cleanup::changes::Reason;
 use crate::domain::finding::Finding;
 use crate::pipeline::job::Job;
@@ -29,8 +30,12 @@ pub struct Outcome {
     pub displacement_p99_over_size: f64,
     /// Length of constraint lines inside the domain, metres.
     pub length_m: f64,
-    /// Length dropped of it, metres.
+    /// Length dropped of it, small loops included, metres.
     pub length_dropped_m: f64,
+    /// Length of small loops that collapsed, metres.
+    pub length_loops_m: f64,
+    /// Longest dropped stretch that is no small loop, over the wished size.
+    pub dropped_longest_over_size: f64,
     /// Length of lines that became a node, metres.
     pub length_shrunk_m: f64,
     /// Sharp angles at nodes of the line work, in the input and after clean-up.
@@ -67,6 +72,10 @@ impl Outcome {
         }
         let budget = f64::from(job.seam_budget_quads);
         let fit = &plan.city.balance.structure;
+        let dropped = &plan.city.dropped;
+        let longest = (dropped.iter())
+            .filter(|it| ![Reason::Shrunk, Reason::SmallLoop, Reason::Clipped].contains(&it.reason))
+            .map(|it| (it.to_m - it.from_m) / job.size_m);
         Outcome {
             stages,
             subdomains: plan.city.partition.subdomains.len(),
@@ -78,10 +87,9 @@ impl Outcome {
             length_m: plan.city.tally.length_m,
             length_dropped_m: plan.city.tally.length_dropped_m,
             sharp_angles: plan.city.tally.sharp_angles,
-            length_shrunk_m: (plan.city.dropped.iter())
-                .filter(|it| it.reason == Reason::Shrunk)
-                .map(|it| it.to_m - it.from_m)
-                .sum(),
+            length_shrunk_m: length_m(dropped, Reason::Shrunk),
+            length_loops_m: length_m(dropped, Reason::SmallLoop),
+            dropped_longest_over_size: longest.fold(0.0, f64::max),
             ilp_gap: plan.city.balance.gap(),
             blocks: [fit.blocks, fit.mapped, fit.mapped_before],
             pattern_gap: plan.city.balance.structure_gap(),
@@ -162,4 +170,10 @@ fn peak_memory_bytes() -> u64 {
     let line = status.lines().find_map(|it| it.strip_prefix("VmHWM:"));
     let kib = line.and_then(|it| it.trim().trim_end_matches("kB").trim().parse::<u64>().ok());
     kib.unwrap_or(0) * 1024
+}
+
+/// Length that was dropped for this reason, metres.
+fn length_m(dropped: &[Dropped], reason: Reason) -> f64 {
+    let of_reason = dropped.iter().filter(|it| it.reason == reason);
+    of_reason.map(|it| it.to_m - it.from_m).sum()
 }

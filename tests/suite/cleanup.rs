@@ -206,6 +206,57 @@ proptest! {
     }
 }
 
+/// A walk from the middle of 100 m x 100 m, all segments longer than half of 10 m.
+fn zigzag() -> impl Strategy<Value = Vec<(i32, i32)>> {
+    let step = (5.2..16.0_f64, prop_oneof![-70.0..-5.0_f64, 5.0..70.0_f64]);
+    prop::collection::vec(step, 2..7).prop_map(|steps| {
+        let (mut points, mut way) = (vec![(50_000, 50_000)], 0.3_f64);
+        for (length_m, turn_deg) in steps {
+            let &(x, y) = points.last().unwrap();
+            let by = [way.cos(), way.sin()].map(|it| (1000.0 * length_m * it).round() as i32);
+            points.push((x + by[0], y + by[1]));
+            way += turn_deg.to_radians();
+        }
+        points
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    /// A line that is nowhere near itself keeps each of its corners as a node, near where it was.
+    #[test]
+    fn corners_of_a_lone_line_stay(walk in zigzag()) {
+        let size = 10.0;
+        let at: Vec<Xy> = walk.iter().map(|&(x, y)| [f64::from(x), f64::from(y)].map(|it| it / 1000.0)).collect();
+        let segments: Vec<[Xy; 2]> = at.windows(2).map(|it| [it[0], it[1]]).collect();
+        let is_lone = (0..at.len()).all(|k| {
+            let others = segments.iter().enumerate().filter(|&(i, _)| i != k && i + 1 != k);
+            let others: Vec<_> = others.map(|it| *it.1).collect();
+            nearest_m(at[k], &others) > 0.5 * size
+        });
+        let is_inside = at.iter().flatten().all(|it| (10.0..90.0).contains(it));
+        prop_assume!(is_lone && is_inside);
+        let result = cleaned(&domain(&[("boundary", square(100_000)), ("", walk)]), size);
+        let nodes = result.arrangement.points.iter().map(|p| [p.x, p.y].map(|it| f64::from(it) / 1000.0));
+        let nodes: Vec<Xy> = nodes.collect();
+        for k in 1..at.len() - 1 {
+            if turn_deg([at[k - 1], at[k], at[k + 1]]) > 30.1 {
+                let near = nodes.iter().filter(|it| (it[0] - at[k][0]).hypot(it[1] - at[k][1]) < 0.25 * size);
+                prop_assert_eq!(near.count(), 1, "corner {} of {:?}", k, at);
+            }
+        }
+    }
+}
+
+fn turn_deg([a, o, b]: [Xy; 3]) -> f64 {
+    let (u, v) = ([o[0] - a[0], o[1] - a[1]], [b[0] - o[0], b[1] - o[1]]);
+    (u[0] * v[1] - u[1] * v[0])
+        .atan2(u[0] * v[0] + u[1] * v[1])
+        .abs()
+        .to_degrees()
+}
+
 /// Districts of a few edges each: all that happens at their borders happens all the time.
 const TINY: cleanup::Grain = cleanup::Grain {
     edges_max: 12,
