@@ -151,17 +151,19 @@ impl<'a> Measure<'a> {
     /// True if the line as read turns there at a corner: by more than the corner angle, between
     /// segments that are long enough to be edges, within [`AT_CORNER`] of the station.
     pub(super) fn is_corner(&self, line: LineId, station_m: f64) -> bool {
-        let stations = self.stations(line);
-        let last = stations.len() - 1;
+        let vertices = self.vertices_of(line);
+        let last = vertices.len() - 1;
         let size_m = self.size_m[line as usize];
-        let next = stations.partition_point(|&s| s < station_m).min(last);
+        let next = vertices.partition_point(|it| it.station_m < station_m);
+        let next = next.min(last);
         let before = next.saturating_sub(1);
-        let k = if station_m - stations[before] < stations[next] - station_m {
+        let away = |k: usize| (vertices[k].station_m - station_m).abs();
+        let k = if away(before) < away(next) {
             before
         } else {
             next
         };
-        if (stations[k] - station_m).abs() > AT_CORNER * size_m {
+        if away(k) > AT_CORNER * size_m {
             return false;
         }
         let (before, after) = match k {
@@ -169,7 +171,7 @@ impl<'a> Measure<'a> {
             _ if self.is_closed(line) => (last - 1, 1),
             _ => return false,
         };
-        let [a, o, b] = [before, k, after].map(|k| self.vertex(line, k));
+        let [a, o, b] = [before, k, after].map(|k| vertices[k].at);
         let (u, v) = ([o[0] - a[0], o[1] - a[1]], [b[0] - o[0], b[1] - o[1]]);
         let (cross, dot) = (u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
         let least_m = self.min_edge * size_m;

@@ -82,6 +82,7 @@ mod importance;
 mod index;
 mod leftovers;
 mod measure;
+mod nearby;
 mod operate;
 mod relax;
 pub mod rooms;
