@@ -36,6 +36,7 @@ pub(super) struct Edge {
 }
 
 impl Edge {
+    #[inline]
     pub(super) fn other(&self, node: u32) -> u32 {
         self.ends[usize::from(self.ends[0] == node)]
     }
@@ -223,6 +224,7 @@ impl<'a> Graph<'a> {
     }
 
     /// True if a node may move or go.
+    #[inline]
     pub(super) fn is_free(&self, node: u32) -> bool {
         self.stand[node as usize] != Stand::Tied
     }
@@ -335,6 +337,7 @@ impl<'a> Graph<'a> {
     }
 
     /// The edge between two nodes.
+    #[inline]
     pub(super) fn find(&self, u: u32, v: u32) -> Option<u32> {
         let (u, v) = if self.star[u as usize].len() <= self.star[v as usize].len() {
             (u, v)
@@ -347,14 +350,17 @@ impl<'a> Graph<'a> {
             .find(|&e| self.edges[e as usize].other(u) == v)
     }
 
+    #[inline]
     pub(super) fn is_there(&self, edge: u32) -> bool {
         self.edges[edge as usize].alive
     }
 
+    #[inline]
     pub(super) fn point(&self, node: u32) -> Point {
         self.at[node as usize]
     }
 
+    #[inline]
     pub(super) fn metres(&self, node: u32) -> Xy {
         self.measure.metres(self.at[node as usize])
     }
@@ -371,12 +377,14 @@ impl<'a> Graph<'a> {
             .collect()
     }
 
+    #[inline]
     pub(super) fn ends_m(&self, edge: u32) -> (Xy, Xy) {
         let [a, b] = self.edges[edge as usize].ends;
         (self.metres(a), self.metres(b))
     }
 
     /// Least wished edge length of the edges at a node, metres.
+    #[inline]
     pub(super) fn size_at_m(&self, node: u32) -> f64 {
         let star = &self.star[node as usize];
         let sizes = star.iter().map(|&e| self.edges[e as usize].size_m);

@@ -130,6 +130,7 @@ impl<'a> Measure<'a> {
         self.domain.lines[line as usize].role != Role::Constraint
     }
 
+    #[inline]
     fn vertices_of(&self, line: LineId) -> &[Vertex] {
         let line = line as usize;
         &self.vertices[self.start[line] as usize..self.start[line + 1] as usize]
@@ -234,12 +235,14 @@ impl<'a> Measure<'a> {
     }
 
     /// `p` in metres.
+    #[inline]
     pub(super) fn metres(&self, p: Point) -> Xy {
         self.grid().local_m(p)
     }
 }
 
 /// The point at a station between two vertices.
+#[inline]
 fn between(one: Vertex, next: Vertex, station_m: f64) -> Xy {
     let t = ((station_m - one.station_m) / (next.station_m - one.station_m)).clamp(0.0, 1.0);
     [0, 1].map(|k| one.at[k] + t * (next.at[k] - one.at[k]))
@@ -262,12 +265,14 @@ fn standing(role: Role, rule: &Rule) -> f64 {
 }
 
 /// Distance between two positions, metres.
+#[inline]
 pub(super) fn distance(a: Xy, b: Xy) -> f64 {
     let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
     (dx * dx + dy * dy).sqrt()
 }
 
 /// Distance of `p` from the segment `a b`, and where the nearest point lies on it, in 0..1.
+#[inline]
 pub(super) fn to_segment(p: Xy, a: Xy, b: Xy) -> (f64, f64) {
     let (ux, uy) = (b[0] - a[0], b[1] - a[1]);
     let length2 = ux * ux + uy * uy;

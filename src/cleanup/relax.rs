@@ -125,7 +125,7 @@ fn pushed(graph: &mut Graph, wanted: &Wanted, node: u32, push: Xy) -> bool {
 }
 
 /// Where a node is pushed by all that is too near, metres. Leaves the nodes in `around` that its
-/// edges push, or theirs it.
+/// edges might push, or theirs it.
 fn push_m(
     graph: &Graph,
     wanted: &Wanted,
@@ -166,9 +166,9 @@ fn push_m(
             if !is_beside(it, at, far, reach) {
                 continue;
             }
+            around.push(other);
             let wants = reach.min(wanted.gap * graph.size_at_m(other));
             if let Some(gap) = gap_below_m(graph, other, edge, wants) {
-                around.push(other);
                 let t = to_segment(it, at, far).1;
                 add(
                     unit(it, between(at, far, t)),

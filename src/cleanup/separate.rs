@@ -216,6 +216,7 @@ pub(super) fn gap_m(graph: &Graph, node: u32, edge: u32) -> Option<f64> {
 }
 
 /// [`gap_m`] if it is below the limit; what is far is told so by its bounding box.
+#[inline]
 pub(super) fn gap_below_m(graph: &Graph, node: u32, edge: u32, limit_m: f64) -> Option<f64> {
     let it = &graph.edges[edge as usize];
     let at = graph.metres(node);
@@ -243,6 +244,7 @@ pub(super) fn gap_below_m(graph: &Graph, node: u32, edge: u32, limit_m: f64) -> 
 }
 
 /// True if `p` is in the bounding box of the segment `a b`, wider by `reach` on all sides.
+#[inline]
 pub(super) fn is_beside(p: Xy, a: Xy, b: Xy, reach: f64) -> bool {
     (0..2).all(|k| a[k].min(b[k]) - reach <= p[k] && p[k] <= a[k].max(b[k]) + reach)
 }
