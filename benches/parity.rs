@@ -1,35 +1,44 @@
 //! Parity of synthetic networks and of real ones: proof, gap, CPU, memory; beside it HiGHS on the
 //! plain form, in the same run.
 //!
-//! `cargo bench --bench parity [-- LARGEST] [--million] [FOLDER.polder]...`: synthetic networks with up
-//! to LARGEST sub-domains (default 100 000; `--smoke`: 1000; `--million` adds the million), and the
-//! networks of finished meshes, their wishes scaled to 1 to 20 intervals a curve. Prints the tables
-//! of `benches/README.md`.
+//! `cargo bench --bench parity [-- LARGEST] [--million] [FOLDER.polder | CASE.geojson:SIZE_M]...`: synthetic
+//! networks with up to LARGEST sub-domains (default 100 000; `--smoke`: 1000; `--million` adds the
+//! million; 0: none), and the networks of meshes, finished or made here, their wishes scaled to 1 to 20
+//! intervals a curve. Prints the tables of `benches/README.md`.
 
 use highs::HighsSolutionStatus;
 use highs::RowProblem;
 use highs::Sense;
 use polder::chunk::reader::Mesh;
+use polder::ingest::CrsChoice;
 use polder::intervals::goals::Block;
 use polder::intervals::goals::Goals;
 use polder::parity;
 use polder::parity::Options;
 use polder::parity::balance::Balance;
 use polder::parity::check::check;
+use polder::parity::check::fits;
 use polder::partition::subdomains::Curve;
 use polder::partition::subdomains::OUTSIDE;
 use polder::partition::subdomains::Partition;
 use polder::partition::subdomains::Subdomain;
+use polder::pipeline::build;
+use polder::pipeline::job::CELL_M;
+use polder::pipeline::job::CORNER_DEG;
+use polder::pipeline::job::Job;
+use polder::pipeline::job::MATCH_SIDES;
+use polder::pipeline::job::SEAM_BUDGET_QUADS;
+use polder::pipeline::plan::parity_options;
 use spade::DelaunayTriangulation;
 use spade::Point2;
 use spade::Triangulation;
 use std::path::Path;
+use std::path::PathBuf;
 
-/// Sub-domains up to which the plain form is tried, and the seconds that HiGHS has for it.
-const PLAIN: (usize, f64) = (10_500, 10.0);
-
-/// Sub-domains up to which patterns are wished for.
-const PATTERNS_MAX: usize = 10_500;
+/// Sub-domains up to which the plain form is tried, and the seconds that HiGHS has for it: of a
+/// synthetic network, of a real one at each scale.
+const PLAIN_MAX: usize = 10_500;
+const PLAIN_S: [f64; 2] = [10.0, 4.0];
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -43,77 +52,115 @@ fn main() {
         largest = 1_000_000;
     }
     println!(
-        "| network | sub-domains | curves | odd share | rows | events a curve | objective | bound | gap % | CPU s | bytes a curve | plain form: gap %, CPU s | patterns: fit before, after % | gap % | CPU s |"
+        "| network | sub-domains | curves | odd share | rows | events a curve | objective | bound | gap % | CPU s | bytes a curve | plain form: gap %, CPU s | patterns: blocks | all fit before, after % | four-sided before, after % | gap % | CPU s | bytes a curve |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     for family in ["grid", "voronoi", "long"] {
         for subdomains in [1_000, 10_000, 100_000, 1_000_000] {
             if subdomains <= largest {
                 let (partition, goals) = network(family, subdomains);
-                row(family, &partition, &goals);
+                row(family, &partition, &goals, PLAIN_S[0]);
             }
         }
     }
-    for folder in words.iter().filter(|word| word.ends_with(".polder")) {
-        let name = Path::new(folder)
+    let folder = std::env::temp_dir().join(format!("polder-parity-{}", std::process::id()));
+    for word in &words {
+        let made = match word.rsplit_once(':') {
+            Some((case, size)) if case.contains(".geojson") => {
+                let size_m = size.parse().expect("a size in metres");
+                build_case(Path::new(case), size_m, &folder)
+            }
+            _ if word.ends_with(".polder") => PathBuf::from(word),
+            _ => continue,
+        };
+        let name = made
             .file_stem()
             .map_or("?".into(), |it| it.to_string_lossy());
         for intervals in [1.0, 2.0, 5.0, 10.0, 20.0] {
-            let (partition, goals) = network_of(Path::new(folder), intervals);
-            row(&format!("{name}, {intervals} a curve"), &partition, &goals);
+            let (partition, goals) = network_of(&made, intervals);
+            let name = format!("{name}, {intervals} a curve");
+            row(&name, &partition, &goals, PLAIN_S[1]);
         }
     }
+    let _ = std::fs::remove_dir_all(folder);
 }
 
-fn row(name: &str, partition: &Partition, goals: &Goals) {
-    let alone = Options {
-        events_max: u64::MAX,
-        nodes_max: 1000,
-        rows_max: 20_000,
-        worth: 0.0,
-        rounds_max: 20,
-        climb_max: 60,
-        gap_enough: 5e-4,
-        neighbourhoods_max: 20,
+/// The mesh of a case, in `folder`.
+fn build_case(case: &Path, size_m: f64, folder: &Path) -> PathBuf {
+    std::fs::create_dir_all(folder).expect("the temporary folder can be made");
+    let name = case.file_name().expect("a file").to_string_lossy();
+    let name = name.split(".geojson").next().unwrap_or("case");
+    let output = folder.join(format!("{name}.polder"));
+    let job = Job {
+        input: case.to_path_buf(),
+        output: output.clone(),
+        size_m,
+        sizes_m: Vec::new(),
+        tolerance_m: None,
+        min_edge_m: None,
+        rules: Vec::new(),
+        crs: CrsChoice::FromFile,
+        cell_m: CELL_M,
+        tile_m: None,
+        corner_deg: CORNER_DEG,
+        match_sides: MATCH_SIDES,
+        without: Vec::new(),
+        seam_budget_quads: SEAM_BUDGET_QUADS,
+        threads: 0,
+        force: true,
+        resume: false,
     };
-    let (made, seconds, bytes) = measured(partition, goals, &alone);
-    let plain = match partition.subdomains.len() <= PLAIN.0 {
-        true => plain_form(partition, goals, &made),
+    build(&job, &|_| {}).expect("a case can be built");
+    output
+}
+
+fn row(name: &str, partition: &Partition, goals: &Goals, plain_s: f64) {
+    let (made, seconds, bytes) = measured(partition, goals, &parity_options(0.0));
+    let plain = match partition.subdomains.len() <= PLAIN_MAX {
+        true => plain_form(partition, goals, &made, plain_s),
         false => "".to_string(),
     };
-    let patterns = match partition.subdomains.len() <= PATTERNS_MAX && !goals.blocks.is_empty() {
-        true => {
-            let (both, seconds, _) = measured(
-                partition,
-                goals,
-                &Options {
-                    worth: 1.0,
-                    ..alone
-                },
-            );
-            let fit = &both.structure;
-            let share = |n: u32| 100.0 * f64::from(n) / f64::from(fit.blocks);
-            format!(
-                "{:.1}, {:.1} | {:.3} | {seconds:.2}",
-                share(fit.mapped_before),
-                share(fit.mapped),
-                100.0 * both.structure_gap()
-            )
-        }
-        false => " | | ".to_string(),
-    };
+    let curves = partition.curves.len() as f64;
     println!(
-        "| {name} | {} | {} | {:.2} | {} | {:.1} | {:.3} | {:.3} | {:.4} | {seconds:.2} | {:.0} | {plain} | {patterns} |",
+        "| {name} | {} | {} | {:.2} | {} | {:.1} | {:.3} | {:.3} | {:.4} | {seconds:.2} | {:.0} | {plain} | {} |",
         partition.subdomains.len(),
         partition.curves.len(),
         made.odd_share,
         made.cuts.value2.len(),
-        made.events as f64 / partition.curves.len() as f64,
+        made.events as f64 / curves,
         made.objective,
         made.bound,
         100.0 * made.gap(),
-        bytes / partition.curves.len() as f64,
+        bytes / curves,
+        patterns(partition, goals, &made),
     );
+}
+
+/// What patterns do beyond parity alone.
+fn patterns(partition: &Partition, goals: &Goals, alone: &Balance) -> String {
+    if goals.blocks.is_empty() {
+        return "0 | | | | |".to_string();
+    }
+    let (both, seconds, bytes) = measured(partition, goals, &parity_options(MATCH_SIDES));
+    let fits = [alone, &both].map(|it| fits(partition, goals, &it.counts));
+    let share = |is_such: fn(&Block) -> bool| {
+        let such: Vec<usize> = (0..goals.blocks.len())
+            .filter(|&k| is_such(&goals.blocks[k]))
+            .collect();
+        let of = |fits: &[bool]| {
+            let fit = such.iter().filter(|&&k| fits[k]).count();
+            100.0 * fit as f64 / such.len().max(1) as f64
+        };
+        format!("{:.1}, {:.1}", of(&fits[0]), of(&fits[1]))
+    };
+    format!(
+        "{} | {} | {} | {:.2} | {seconds:.2} | {:.0}",
+        goals.blocks.len(),
+        share(|_| true),
+        share(|block| block.sides.len() == 4),
+        100.0 * both.structure_gap(),
+        bytes / partition.curves.len() as f64,
+    )
 }
 
 /// The balance, the CPU seconds that it took and how much memory grew, bytes; checked.
@@ -143,7 +190,7 @@ fn peak_bytes() -> f64 {
 }
 
 /// The form that everyone writes first: whole counts, whole halves of totals.
-fn plain_form(partition: &Partition, goals: &Goals, made: &Balance) -> String {
+fn plain_form(partition: &Partition, goals: &Goals, made: &Balance, limit_s: f64) -> String {
     let mut problem = RowProblem::default();
     let mut around = vec![Vec::new(); partition.subdomains.len()];
     for (id, curve) in partition.curves.iter().enumerate() {
@@ -173,7 +220,7 @@ fn plain_form(partition: &Partition, goals: &Goals, made: &Balance) -> String {
     model.make_quiet();
     model.set_option("threads", 1);
     model.set_option("parallel", "off");
-    model.set_option("time_limit", PLAIN.1);
+    model.set_option("time_limit", limit_s);
     let solved = model.solve();
     let seconds = cpu_seconds() - start;
     if solved.primal_solution_status() != HighsSolutionStatus::Feasible {

@@ -43,6 +43,7 @@
 //! How shapes are shown: `report`. The independent checker outside this project is the other
 //! witness.
 
+pub mod patterns;
 pub mod quality;
 pub mod verdict;
 
@@ -52,7 +53,6 @@ mod counts;
 mod following;
 mod outline;
 mod parity;
-mod patterns;
 mod rings;
 mod segments;
 mod shortest;

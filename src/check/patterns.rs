@@ -27,7 +27,7 @@ pub(crate) fn check(mesh: &Mesh) -> Promise {
         });
         return promise;
     }
-    let (partition, goals) = network(&frame, given);
+    let (partition, goals) = network_of(&frame, given);
     let counts: Vec<u32> = (0..frame.curves())
         .map(|curve| frame.count(curve))
         .collect();
@@ -94,8 +94,13 @@ fn is_around(frame: &FrameView, given: &PatternsView, block: usize) -> bool {
     walk == curves
 }
 
-/// What parity sees of the frame.
-fn network(frame: &FrameView, given: &PatternsView) -> (Partition, Goals) {
+/// What parity sees of the mesh; `None` if no patterns were wished for.
+pub fn network(mesh: &Mesh) -> Option<(Partition, Goals)> {
+    let frame = mesh.frame();
+    (frame.patterns.as_ref()).map(|given| network_of(&frame, given))
+}
+
+fn network_of(frame: &FrameView, given: &PatternsView) -> (Partition, Goals) {
     let curve = |id: usize| Curve {
         nodes: Vec::new(),
         edges: Vec::new(),

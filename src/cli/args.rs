@@ -140,6 +140,7 @@ pub struct BuildArgs {
     pub seam_budget: Option<u32>,
     /// What it is worth that opposite sides of a sub-domain get equal counts (and the like for three,
     /// five and six sides): 1 as much as one edge at 1.4 times its wished length. 0: nothing.
+    /// Default: 1.2.
     #[arg(long)]
     pub match_sides: Option<f64>,
     /// Replace an existing output.

@@ -19,6 +19,10 @@ const MAY_TURN_DEG: f64 = 22.0;
 /// middle, priced as mapping does (a quarter of a squared radian).
 const IRREGULAR_DEG2: f64 = 820.0;
 
+/// Quads that a block may have, as a square of its circumference would. Larger ones are mostly regular
+/// by any method: to fit them changes no quality figure of any case and costs as much as all others.
+const QUADS_MAX: f64 = 256.0;
+
 /// All sub-domains of three to six sides whose wishes nearly fit, in the order of their ids.
 pub fn blocks(
     goals: &Goals,
@@ -32,13 +36,16 @@ pub fn blocks(
         .collect()
 }
 
-/// The wishes are off by at most an interval, or by the ratio: to fit others would spoil the
-/// sizes of the neighbours for a patch that is stretched anyway.
+/// Small, and the wishes are off by at most an interval, or by the ratio: to fit others would spoil
+/// the sizes of the neighbours for a patch that is stretched anyway.
 fn is_promising(goals: &Goals, block: &Block, ratio: f64) -> bool {
     let wish = |curve: usize| goals.goal[curve].max(f64::from(goals.lower[curve]));
     let wishes = block.totals(wish);
     let sides = &wishes[..block.sides.len()];
     let least = sides.iter().copied().fold(f64::INFINITY, f64::min);
+    if (sides.iter().sum::<f64>() / 4.0).powi(2) > QUADS_MAX {
+        return false;
+    }
     let enough = if sides.len() == 4 { 0.0 } else { 1.5 };
     rules(sides.len()).iter().all(|rule| {
         let signed = wishes.iter().zip(&rule.sign);

@@ -53,6 +53,12 @@ impl Rule {
         let sides = totals.iter().zip(&self.sign);
         i64::from(self.constant) + sides.map(|(n, &sign)| n * i64::from(sign)).sum::<i64>()
     }
+
+    /// The same of real totals.
+    pub fn real_excess(&self, totals: &[f64; 6]) -> f64 {
+        let sides = totals.iter().zip(&self.sign);
+        f64::from(self.constant) + sides.map(|(n, &sign)| n * f64::from(sign)).sum::<f64>()
+    }
 }
 
 /// What the counts of a block with this many sides must satisfy so that one pattern fits, besides
@@ -91,6 +97,22 @@ impl Goals {
     /// as bad as twice as many.
     pub fn cost(&self, curve: usize, n: u32) -> f64 {
         self.weight[curve] * self.deviation(curve, n)
+    }
+
+    /// The real count that is cheapest if each interval costs `tilt` more, within the bounds.
+    pub fn cheapest(&self, curve: usize, tilt: f64) -> f64 {
+        let (lower, upper) = (self.lower[curve].into(), self.upper[curve].into());
+        let goal = self.goal[curve].max(lower);
+        // The slope of the cost jumps from minus to plus this at the goal.
+        let jump = 2.0 * self.weight[curve] / goal;
+        let free = if tilt < -jump {
+            -tilt / jump * goal
+        } else if tilt > jump {
+            (jump / tilt).cbrt() * goal
+        } else {
+            goal
+        };
+        free.clamp(lower, upper)
     }
 
     /// The cost without its weight.

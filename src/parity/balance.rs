@@ -79,7 +79,7 @@ impl Balance {
     /// How far cost and price together are from their bound, in the same way.
     pub fn structure_gap(&self) -> f64 {
         let total = self.objective + self.structure.price;
-        if self.structure.bound == 0.0 || total <= self.base {
+        if self.structure.bound == 0.0 || units(total) <= units(self.structure.bound) {
             return 0.0;
         }
         (total - self.structure.bound) / (total - self.base)

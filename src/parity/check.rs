@@ -98,3 +98,11 @@ pub fn recount(
         bound: structure::bound_units(partition, goals, worth, made)?,
     })
 }
+
+/// Which blocks `counts` let a pattern mesh.
+pub fn fits(partition: &Partition, goals: &Goals, counts: &[u32]) -> Vec<bool> {
+    let (rules, places) = (Rules::of(goals), Places::of(partition, goals));
+    let draft = Draft::new(goals, &rules, &places, 0, counts.to_vec());
+    let blocks = 0..goals.blocks.len();
+    blocks.map(|block| draft.excess(block) == 0).collect()
+}

@@ -60,23 +60,21 @@ pub fn expect_bounds(goals: &Goals) -> Result<(), Error> {
 /// count is fixed.
 fn choice(goals: &Goals, curve: usize, tilt: i64) -> ((u32, i64), Option<(u32, i64)>) {
     let (lower, upper) = (goals.lower[curve], goals.upper[curve]);
-    // Costs are convex with their minimum at the goal: the best of each parity lies within two of
-    // it. With a tilt it may lie anywhere, and rounding to units may hide it from a short walk.
-    let range = match tilt {
-        0 => {
-            let at = (goals.goal[curve] as u32).clamp(lower, upper);
-            at.saturating_sub(2).max(lower)..=at.saturating_add(3).min(upper)
-        }
-        _ => lower..=upper,
-    };
+    let start = goals.cheapest(curve, tilt as f64 * COST_UNIT) as u32;
     let mut best: [Option<(i64, u32)>; 2] = [None, None];
-    for n in range {
+    // Costs are convex but for half a unit of rounding each: where one exceeds that of a count met
+    // before, of the same parity, by more than two, nothing beyond is cheaper.
+    let mut look = |n: u32| {
         let cost = cost_units(goals, curve, n) + tilt * i64::from(n);
         let slot = &mut best[(n % 2) as usize];
+        let is_beyond = slot.is_some_and(|least| cost > least.0 + 2);
         if slot.is_none_or(|least| (cost, n) < least) {
             *slot = Some((cost, n));
         }
-    }
+        !is_beyond
+    };
+    let _up = (start..=upper).take_while(|&n| look(n)).count();
+    let _down = (lower..start).rev().take_while(|&n| look(n)).count();
     let named = |(cost, n): (i64, u32)| (n, cost);
     match best {
         [Some(even), Some(odd)] => (named(even.min(odd)), Some(named(even.max(odd)))),
@@ -221,5 +219,46 @@ fn node_of(side: SubdomainId) -> u32 {
         OUTSIDE
     } else {
         side
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::choice;
+    use super::cost_units;
+    use crate::intervals::goals::Goals;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// The walk from the real optimum finds what a look at all counts finds.
+        #[test]
+        fn choice_is_the_best_of_all(
+            goal in 0.3_f64..400.0,
+            weight in 1.0_f64..30.0,
+            tilt in -3_000_000_i64..3_000_000,
+            lower in 1_u32..6,
+            wide in 0_u32..600,
+            flat in any::<bool>(),
+        ) {
+            let goals = Goals {
+                goal: vec![goal],
+                lower: vec![lower],
+                upper: vec![lower + wide],
+                weight: vec![weight],
+                blocks: Vec::new(),
+            };
+            // Costs that are nearly flat: rounding to units is then what decides.
+            let tilt = if flat { tilt / 100_000 } else { tilt };
+            let cost = |n: u32| cost_units(&goals, 0, n) + tilt * i64::from(n);
+            let best = |parity: u32| {
+                let all = (lower..=lower + wide).filter(|n| n % 2 == parity);
+                all.map(|n| (cost(n), n)).min()
+            };
+            let (mine, other) = choice(&goals, 0, tilt);
+            let mut expected: Vec<(i64, u32)> = [best(0), best(1)].into_iter().flatten().collect();
+            expected.sort_unstable();
+            prop_assert_eq!((mine.1, mine.0), expected[0]);
+            prop_assert_eq!(other.map(|it| (it.1, it.0)), expected.get(1).copied());
+        }
     }
 }

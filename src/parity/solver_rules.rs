@@ -1,5 +1,4 @@
-//! The rules of patterns as HiGHS sees them: a linear programme for the multipliers, and small
-//! integer programmes for neighbourhoods.
+//! The rules of patterns as HiGHS sees them: small integer programmes for neighbourhoods.
 
 use crate::intervals::goals::Goals;
 use crate::parity::draft::Draft;
@@ -9,14 +8,10 @@ use crate::parity::tilts::Rules;
 use crate::partition::subdomains::OUTSIDE;
 use crate::partition::subdomains::Partition;
 use highs::Col;
-use highs::HighsModelStatus;
 use highs::HighsSolutionStatus;
 use highs::Model;
 use highs::RowProblem;
 use highs::Sense;
-
-/// Counts more and less than the wish that have a column each; beyond, the last slope goes on.
-const STEPS: u32 = 4;
 
 /// How far a count may move in one neighbourhood.
 const REACH: u32 = 3;
@@ -24,94 +19,21 @@ const REACH: u32 = 3;
 /// Units of cost in HiGHS' objective: it works best with numbers near one.
 const SCALE: f64 = 1e-6;
 
-/// The duals of the rules in the linear programme that does not know parity, units, one a rule of
-/// each block; `None` if HiGHS does not come to an end.
-pub fn multipliers(goals: &Goals, rules: &Rules, worth: i64) -> Option<Vec<f64>> {
-    let mut problem = RowProblem::default();
-    let mut on_block = vec![false; goals.goal.len()];
-    for &curve in goals
-        .blocks
-        .iter()
-        .flat_map(|block| block.sides.iter().flatten())
-    {
-        on_block[curve as usize] = true;
-    }
-    let mut column: Vec<Option<Col>> = vec![None; goals.goal.len()];
-    for curve in (0..goals.goal.len()).filter(|&curve| on_block[curve]) {
-        let near = (goals.goal[curve].round() as u32).clamp(goals.lower[curve], goals.upper[curve]);
-        column[curve] = Some(count_column(&mut problem, goals, curve, near, STEPS, true));
-    }
-    let mut rows = 0;
-    let first_row = problem.num_rows();
-    for block in &goals.blocks {
-        let price = problem.add_column(worth as f64 * SCALE, 0..);
-        for rule in rules.with_sides(block.sides.len()) {
-            let mut row = vec![(price, 1.0)];
-            for (side, &sign) in block
-                .sides
-                .iter()
-                .zip(&rule.sign)
-                .filter(|(_, sign)| **sign != 0)
-            {
-                let columns = side.iter().filter_map(|&curve| column[curve as usize]);
-                row.extend(columns.map(|column| (column, -f64::from(sign))));
-            }
-            problem.add_row(f64::from(rule.constant).., &row);
-            rows += 1;
-        }
-    }
-    let mut model = Model::try_new(problem).ok()?;
-    model.set_sense(Sense::Minimise);
-    set_options(&mut model, 0);
-    // Interior duals, no vertex: the climb starts better from the middle of the optimal face.
-    model.set_option("solver", "ipm");
-    model.set_option("run_crossover", "off");
-    let solved = model.try_solve().ok()?;
-    if solved.status() != HighsModelStatus::Optimal {
-        return None;
-    }
-    let duals = solved.get_solution();
-    let of_rules = &duals.dual_rows()[first_row..first_row + rows];
-    Some(of_rules.iter().map(|u| u.max(0.0) / SCALE).collect())
-}
-
-/// A column for the count of `curve`, with its convex cost in steps about `near`. If `open`, the
-/// last steps go on as far as the bounds do; else the count stays within the steps.
-fn count_column(
-    problem: &mut RowProblem,
-    goals: &Goals,
-    curve: usize,
-    near: u32,
-    steps: u32,
-    open: bool,
-) -> Col {
-    let (lower, upper) = (goals.lower[curve], goals.upper[curve]);
-    let (least, most) = match open {
-        true => (lower, upper),
-        false => (
-            near.saturating_sub(steps).max(lower),
-            (near + steps).min(upper),
-        ),
-    };
-    let count = match open {
-        true => problem.add_column(0.0, f64::from(least)..=f64::from(most)),
-        false => problem.add_integer_column(0.0, f64::from(least)..=f64::from(most)),
-    };
+/// A column for the count of `curve`, at most [`REACH`] from `near`, with its convex cost in steps.
+fn count_column(problem: &mut RowProblem, goals: &Goals, curve: usize, near: u32) -> Col {
+    let least = near.saturating_sub(REACH).max(goals.lower[curve]);
+    let most = (near + REACH).min(goals.upper[curve]);
+    let count = problem.add_integer_column(0.0, f64::from(least)..=f64::from(most));
     let cost = |n: u32| cost_units(goals, curve, n) as f64 * SCALE;
     let mut row = vec![(count, 1.0)];
-    for step in 0..steps {
-        let long = if open && step + 1 == steps {
-            f64::INFINITY
-        } else {
-            1.0
-        };
+    for step in 0..REACH {
         if near + step < most {
             let up = cost(near + step + 1) - cost(near + step);
-            row.push((problem.add_column(up, 0.0..=long), -1.0));
+            row.push((problem.add_column(up, 0.0..=1.0), -1.0));
         }
         if near > least + step {
             let down = cost(near - step - 1) - cost(near - step);
-            row.push((problem.add_column(down, 0.0..=long), 1.0));
+            row.push((problem.add_column(down, 0.0..=1.0), 1.0));
         }
     }
     problem.add_row(f64::from(near)..=f64::from(near), &row);
@@ -143,7 +65,7 @@ pub fn counts(
     let columns: Vec<Col> = (place.curves.iter())
         .map(|&curve| {
             let near = draft.counts[curve as usize];
-            count_column(&mut problem, goals, curve as usize, near, REACH, false)
+            count_column(&mut problem, goals, curve as usize, near)
         })
         .collect();
     let column_of = |curve: u32| place.curves.binary_search(&curve).ok().map(|k| columns[k]);

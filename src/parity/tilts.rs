@@ -47,6 +47,35 @@ impl Rules {
     pub fn rows(&self, block: usize) -> std::ops::Range<usize> {
         self.start[block] as usize..self.start[block + 1] as usize
     }
+
+    /// Moves the multipliers of one block to the nearest ones that prove something: none below 0, at
+    /// most `worth` together.
+    pub fn project(&self, of_block: &mut [f64], worth: f64) {
+        of_block.iter_mut().for_each(|u| *u = u.max(0.0));
+        if of_block.iter().sum::<f64>() > worth {
+            let by = surplus(of_block, worth);
+            of_block.iter_mut().for_each(|u| *u = (*u - by).max(0.0));
+        }
+    }
+}
+
+/// What must be taken from each of at most six `values`, none going below 0, so that `most` in all
+/// are left.
+fn surplus(values: &[f64], most: f64) -> f64 {
+    let mut down = [0.0; 6];
+    let down = &mut down[..values.len()];
+    down.copy_from_slice(values);
+    down.sort_by(|a, b| b.total_cmp(a));
+    let (mut sum, mut by) = (0.0, 0.0);
+    for (k, value) in down.iter().enumerate() {
+        sum += value;
+        let with = (sum - most) / (k + 1) as f64;
+        if with >= *value {
+            break;
+        }
+        by = with;
+    }
+    by
 }
 
 /// What multipliers do to the programme, whole units.

@@ -59,10 +59,10 @@ pub const CELL_M: f64 = 0.001;
 /// and holds about 2 MB.
 pub const SEAM_BUDGET_QUADS: u32 = 20_000;
 
-/// Worth of a pattern unless the job says otherwise: none. What 1.2 gains a mesh (mean scaled Jacobian
-/// .001 to .003; the table in `benches/README.md`) takes 4 s more for wuhan-roads at 1M quads, 35 s
-/// and 300 MB more at 10M.
-pub const MATCH_SIDES: f64 = 0.0;
+/// Worth of a pattern unless the job says otherwise: an excess of one counts as much as an edge at 1.5
+/// times its wished length. From 0.6 to 1.2 every quality figure is about as good, above p1 falls
+/// (the table in `benches/README.md`).
+pub const MATCH_SIDES: f64 = 1.2;
 
 impl Job {
     /// The tolerance where no kind says otherwise: as given, or half the size.

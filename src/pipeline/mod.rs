@@ -18,6 +18,7 @@
 //! # Not here
 //! Algorithms: every stage is a plain function that knows no thread.
 
+mod counts;
 pub mod error;
 mod frame;
 pub mod job;

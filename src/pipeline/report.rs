@@ -11,6 +11,7 @@ use crate::cleanup::changes::Reason;
 use crate::export;
 use crate::geometry::point::Xy;
 use crate::meshing::patch::Method;
+use crate::pipeline::counts;
 use crate::pipeline::error::Error;
 use crate::pipeline::log::Log;
 use crate::report::html::html;
@@ -208,6 +209,15 @@ fn tables(mesh: &Mesh, verdict: &Verdict) -> Vec<Table> {
         promises(verdict),
         methods(&verdict.quality),
     ];
+    let counts = counts::rows(mesh);
+    if !counts.is_empty() {
+        tables.push(table(
+            "Interval counts",
+            "Costs in relative deviations from the wish; each bound is recomputed from its proof (promises).",
+            &["figure", "value"],
+            counts.into_iter().map(Vec::from).collect(),
+        ));
+    }
     if let Some(log) = Log::read(mesh.dir()) {
         let rows = (log.stages.into_iter())
             .map(|it| vec![it.stage, format!("{:.2}", it.seconds), it.note])

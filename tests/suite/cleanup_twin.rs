@@ -1,6 +1,6 @@
 //! A slow twin of clean-up: its promises again, over all pairs, in exact integers (millimetres).
 //!
-//! Some hundred small line works in each run; `POLDER_TWIN=20000` asks for more.
+//! Two thousand small line works in each run; `POLDER_TWIN=20000` asks for more.
 
 use crate::cleanup::cleaned;
 use crate::cleanup::domain;
@@ -245,7 +245,7 @@ fn far_lines_stay_apart(domain: &Domain, cleaned: &Cleaned, limit_mm: i128) -> R
 
 fn cases() -> u32 {
     let asked = std::env::var("POLDER_TWIN").ok();
-    asked.and_then(|it| it.parse().ok()).unwrap_or(300)
+    asked.and_then(|it| it.parse().ok()).unwrap_or(2000)
 }
 
 proptest! {

@@ -109,11 +109,10 @@ fn the_way_through_on_a_small_city() {
         let error = String::from_utf8_lossy(&done.stderr);
         assert_eq!(done.status.code(), Some(0), "{words:?}: {error}");
     }
-    assert!(
-        fs::read_to_string(at.join("r.html"))
-            .unwrap()
-            .contains("data:image/png")
-    );
+    let page = fs::read_to_string(at.join("r.html")).unwrap();
+    for part in ["data:image/png", "gap of cost and price", "parity alone: "] {
+        assert!(page.contains(part), "{part}");
+    }
     assert!(!at.join("n.polder").exists(), "a plan makes nothing");
 }
 
