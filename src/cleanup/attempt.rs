@@ -26,15 +26,12 @@ pub(super) enum Deed {
 }
 
 /// Stations as they were: edge, index of the piece, is it the end of the piece, metres.
-pub(super) type Stations = SmallVec<[(u32, u32, bool, f64); 8]>;
+pub(super) type Stations = SmallVec<[(u32, u32, bool, f64); 4]>;
 
 impl Graph<'_> {
     /// Does what `tried` does, or nothing if it returns `None`. It may bend edges to new nodes and
     /// shift nodes; whatever changes edges that stay must come last, and succeed.
-    pub(super) fn attempt<R>(
-        &mut self,
-        tried: impl FnOnce(&mut Self) -> Option<R>,
-    ) -> Option<R> {
+    pub(super) fn attempt<R>(&mut self, tried: impl FnOnce(&mut Self) -> Option<R>) -> Option<R> {
         assert!(self.deeds.is_none(), "attempts are not nested");
         let touched = self.touched.len();
         self.deeds = Some(Vec::new());

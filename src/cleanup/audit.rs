@@ -226,7 +226,8 @@ fn displacements(graph: &Graph) -> Tally {
         }
     }
     let [displacement_max_m, displacement_p99_m] = extremes(&mut samples, 0, worst[0]);
-    let [displacement_max_over_size, displacement_p99_over_size] = extremes(&mut samples, 1, worst[1]);
+    let [displacement_max_over_size, displacement_p99_over_size] =
+        extremes(&mut samples, 1, worst[1]);
     Tally {
         displacement_max_m,
         displacement_p99_m,

@@ -73,10 +73,8 @@ impl Index {
             };
             for it in &block[within(cell)] {
                 // one branch for all four: it is taken by few
-                let is_aside = (it.max.x < left)
-                    | (it.min.x > right)
-                    | (it.max.y < bottom)
-                    | (it.min.y > top);
+                let is_aside =
+                    (it.max.x < left) | (it.min.x > right) | (it.max.y < bottom) | (it.min.y > top);
                 if !is_aside {
                     found.push(it.edge);
                 }

@@ -74,10 +74,11 @@ impl<'a> Measure<'a> {
             let stations = domain.stations_m(id as LineId);
             let length = *stations.last().expect("a line has two points");
             let vertices = stations.iter().zip(&line.points);
-            made.vertices.extend(vertices.map(|(&station_m, &p)| Vertex {
-                station_m,
-                at: domain.grid.local_m(p),
-            }));
+            made.vertices
+                .extend(vertices.map(|(&station_m, &p)| Vertex {
+                    station_m,
+                    at: domain.grid.local_m(p),
+                }));
             made.start.push(made.vertices.len() as u32);
             let kind = usize::from(line.kind);
             made.size_m.push(sizes.by_kind_m[kind]);

@@ -56,7 +56,9 @@ impl Graph<'_> {
         let p = self.measure.metres(p);
         self.star[v as usize].iter().all(|&edge| {
             let it = &self.edges[edge as usize];
-            let [a, b] = it.ends.map(|end| if end == v { p } else { self.metres(end) });
+            let [a, b] = it
+                .ends
+                .map(|end| if end == v { p } else { self.metres(end) });
             (it.pieces.iter()).all(|piece| self.measure.fits(piece, a, b, share))
         })
     }
