@@ -24,6 +24,9 @@ pub mod partition;
 /// Partition + SizeWish -> Arrangement with large sub-domains cut into parts.
 pub mod seams;
 
+/// Partition + SizeWish -> Arrangement with rungs across narrow places.
+pub mod rungs;
+
 /// Partition + SizeWish -> Goals: real counts, bounds, costs.
 pub mod intervals;
 

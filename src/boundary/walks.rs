@@ -11,6 +11,7 @@ use crate::intervals::wish::edge_wish;
 use crate::noding::arrangement::Arrangement;
 use crate::partition::subdomains::Partition;
 use crate::partition::subdomains::SubdomainId;
+use crate::seams::pitch_cells;
 use rustc_hash::FxHashMap;
 
 /// All that the walks of a sub-domain are made from: the city's topology and its counts.
@@ -40,7 +41,7 @@ pub struct Walks {
     pub ids: Vec<u64>,
     /// Closed walks, indices into `nodes`; the first is not repeated at the end.
     pub walks: Vec<Vec<u32>>,
-    /// For each walk, for each of its edges `walk[k] -> walk[k + 1]`: true on a seam.
+    /// For each walk, for each of its edges `walk[k] -> walk[k + 1]`: true on a lattice seam.
     pub on_seam: Vec<Vec<bool>>,
 }
 
@@ -62,13 +63,25 @@ pub fn walks(site: &Site, subdomain: SubdomainId) -> Walks {
                     made.nodes.len() as u32 - 1
                 });
                 nodes.push(index);
-                on_seam.push(site.partition.curves[(half >> 1) as usize].is_seam);
+                on_seam.push(is_on_lattice(site, half >> 1));
             }
         }
         made.walks.push(nodes);
         made.on_seam.push(on_seam);
     }
     made
+}
+
+/// True on lattice seams and their ends. A rung touches no lattice point (or by chance, which does
+/// no harm): to the mesher it is a wall like any other.
+fn is_on_lattice(site: &Site, curve: u32) -> bool {
+    let curve = &site.partition.curves[curve as usize];
+    let pitch = pitch_cells(site.domain, site.sizes);
+    let mut places = curve
+        .nodes
+        .iter()
+        .map(|&node| site.arrangement.points[node as usize]);
+    curve.is_seam && places.any(|p| p.x % pitch == 0 && p.y % pitch == 0)
 }
 
 /// Global ids and positions of the nodes of `curve`, both ends included, in its own direction.

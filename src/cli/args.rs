@@ -143,6 +143,10 @@ pub struct BuildArgs {
     /// Default: 1.2.
     #[arg(long)]
     pub match_sides: Option<f64>,
+    /// Narrow places are cut into blocks of one row by short seams ("rungs") up to this long, in
+    /// sizes; 0 for none. Default: 0.8.
+    #[arg(long)]
+    pub longest_rung: Option<f64>,
     /// Replace an existing output.
     #[arg(long)]
     pub force: bool,

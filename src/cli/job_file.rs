@@ -10,6 +10,7 @@ use crate::ingest::CrsChoice;
 use crate::pipeline::job::CELL_M;
 use crate::pipeline::job::CORNER_DEG;
 use crate::pipeline::job::Job;
+use crate::pipeline::job::LONGEST_RUNG;
 use crate::pipeline::job::MATCH_SIDES;
 use crate::pipeline::job::SEAM_BUDGET_QUADS;
 use serde::Deserialize;
@@ -36,6 +37,7 @@ struct JobFile {
     cell: Option<f64>,
     tile: Option<f64>,
     seam_budget: Option<u32>,
+    longest_rung: Option<f64>,
     match_sides: Option<f64>,
     threads: Option<usize>,
 }
@@ -143,6 +145,7 @@ pub fn job(args: &BuildArgs) -> Result<Job, String> {
             .seam_budget
             .or(file.seam_budget)
             .unwrap_or(SEAM_BUDGET_QUADS),
+        longest_rung: (args.longest_rung.or(file.longest_rung)).unwrap_or(LONGEST_RUNG),
         match_sides: (args.match_sides.or(file.match_sides)).unwrap_or(MATCH_SIDES),
         threads: args.threads.or(file.threads).unwrap_or(0),
         force: args.force,
@@ -233,6 +236,12 @@ fn validate(job: &Job) -> Result<(), String> {
         return Err(format!(
             "match_sides is {}: it must lie in 0..1000",
             job.match_sides
+        ));
+    }
+    if !(0.0..=2.0).contains(&job.longest_rung) {
+        return Err(format!(
+            "longest_rung is {}: it must lie in 0..2 sizes",
+            job.longest_rung
         ));
     }
     if job.seam_budget_quads < 1000 {

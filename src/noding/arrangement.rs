@@ -53,6 +53,23 @@ impl Arrangement {
         &self.pieces[self.piece_start[e] as usize..self.piece_start[e + 1] as usize]
     }
 
+    /// The part of an edge between two nodes on it, each with its share of the edge's length, as
+    /// [`Arrangement::from_parts`] takes it.
+    pub fn part_of(&self, edge: u32, from: (u32, f64), to: (u32, f64)) -> ([u32; 2], Vec<Piece>) {
+        let at = |piece: &Piece, share: f64| match share {
+            // Ends keep their bits.
+            0.0 => piece.from_m,
+            1.0 => piece.to_m,
+            _ => piece.from_m + share * (piece.to_m - piece.from_m),
+        };
+        let pieces = self.pieces_of(edge).iter().map(|piece| Piece {
+            line: piece.line,
+            from_m: at(piece, from.1),
+            to_m: at(piece, to.1),
+        });
+        ([from.0, to.0], pieces.collect())
+    }
+
     /// The arrangement of these edges: sorts points and edges, drops unused points and edges of no
     /// length, merges equal edges with all their pieces. `edges[i]` runs from its first to its
     /// second index; pieces are given in that direction and turned where the edge is turned.

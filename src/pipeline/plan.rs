@@ -27,6 +27,7 @@ use crate::pipeline::job::Job;
 use crate::pipeline::progress::Stopwatch;
 use crate::pipeline::refusal;
 use crate::pipeline::tiles;
+use crate::rungs;
 use crate::seams;
 use crate::spill;
 use crate::spill::Parked;
@@ -297,7 +298,7 @@ fn cut(
         );
         Ok((made, note))
     })?;
-    watch.stage("seams", 1, |_| -> Result<_, Error> {
+    let (arrangement, partition) = watch.stage("seams", 1, |_| -> Result<_, Error> {
         let options = seams::Options {
             budget_quads: f64::from(job.seam_budget_quads),
         };
@@ -313,6 +314,23 @@ fn cut(
             parts.subdomains.len()
         );
         Ok(((seamed.arrangement, parts), note))
+    })?;
+    watch.stage("rungs", 1, |_| -> Result<_, Error> {
+        let options = rungs::Options {
+            longest: job.longest_rung,
+            corner_deg: job.corner_deg,
+        };
+        let runged = rungs::lay(domain, sizes, &arrangement, &partition, &options);
+        if runged.rungs == 0 {
+            return Ok(((arrangement, partition), "none needed".to_string()));
+        }
+        let parts = tiles::partition(domain, &runged.arrangement, tile_cells, job.corner_deg)?;
+        let note = format!(
+            "{} rungs, {} sub-domains",
+            runged.rungs,
+            parts.subdomains.len()
+        );
+        Ok(((runged.arrangement, parts), note))
     })
 }
 

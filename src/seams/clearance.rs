@@ -21,7 +21,7 @@ pub(super) fn distance_to_segment(p: Xy, a: Xy, b: Xy) -> f64 {
 }
 
 /// Distance between two segments, cells; zero if they meet.
-pub(super) fn distance_between(s: [Point; 2], t: [Point; 2]) -> f64 {
+pub fn distance_between(s: [Point; 2], t: [Point; 2]) -> f64 {
     if meet(s, t) {
         return 0.0;
     }
@@ -45,13 +45,14 @@ pub(super) fn meet([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
 }
 
 /// Segments by the square buckets that they pass.
-pub(super) struct Buckets {
+pub struct Buckets {
     side: i64,
     /// Never iterated, so that the order of hashing does not matter.
     ids: FxHashMap<(i64, i64), Vec<u32>>,
 }
 
 impl Buckets {
+    /// None yet; squares with sides of so many cells.
     pub fn new(side: i32) -> Buckets {
         Buckets {
             side: i64::from(side.max(1)),

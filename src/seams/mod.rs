@@ -43,7 +43,7 @@
 pub mod check;
 
 mod cells;
-mod clearance;
+pub mod clearance;
 mod ends;
 mod gaps;
 mod merge;

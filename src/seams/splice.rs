@@ -2,7 +2,6 @@
 
 use crate::geometry::point::Point;
 use crate::noding::arrangement::Arrangement;
-use crate::noding::arrangement::Piece;
 use crate::seams::propose::Candidate;
 use crate::seams::propose::Stop;
 use crate::seams::raster::LatticeLine;
@@ -24,10 +23,10 @@ pub(super) fn splice(
             split.next();
             let to = (points.len() as u32, share);
             points.push(at);
-            edges.push(part_of(arrangement, edge, from, to));
+            edges.push(arrangement.part_of(edge, from, to));
             from = to;
         }
-        edges.push(part_of(arrangement, edge, from, (b, 1.0)));
+        edges.push(arrangement.part_of(edge, from, (b, 1.0)));
     }
     let mut add = |[a, b]: [Point; 2]| {
         let first = points.len() as u32;
@@ -58,27 +57,6 @@ fn splits(arrangement: &Arrangement, seams: &[Candidate]) -> Vec<(u32, Point, f6
         .collect();
     splits.sort_by(|p, q| p.0.cmp(&q.0).then(p.2.total_cmp(&q.2)));
     splits
-}
-
-/// The part of an edge between two of its nodes, each with its share of the edge's length.
-fn part_of(
-    arrangement: &Arrangement,
-    edge: u32,
-    from: (u32, f64),
-    to: (u32, f64),
-) -> ([u32; 2], Vec<Piece>) {
-    let at = |piece: &Piece, share: f64| match share {
-        // Ends keep their bits.
-        0.0 => piece.from_m,
-        1.0 => piece.to_m,
-        _ => piece.from_m + share * (piece.to_m - piece.from_m),
-    };
-    let pieces = arrangement.pieces_of(edge).iter().map(|piece| Piece {
-        line: piece.line,
-        from_m: at(piece, from.1),
-        to_m: at(piece, to.1),
-    });
-    ([from.0, to.0], pieces.collect())
 }
 
 /// The straight stretch of a seam, if it has one.

@@ -26,6 +26,7 @@ const LAYERS: &[Layer] = &[
     Layer("cleanup", Pure, &[]),
     Layer("partition", Pure, &[]),
     Layer("seams", Pure, &[]),
+    Layer("rungs", Pure, &[]),
     Layer("intervals", Pure, &[]),
     Layer("parity", Pure, &["highs"]),
     Layer("boundary", Pure, &[]),

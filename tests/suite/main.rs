@@ -18,6 +18,7 @@ mod parity;
 mod partition;
 mod pipeline;
 mod report;
+mod rungs;
 mod seams;
 mod spill;
 mod synth;

@@ -20,6 +20,7 @@ use polder::pipeline::build;
 use polder::pipeline::job::CELL_M;
 use polder::pipeline::job::CORNER_DEG;
 use polder::pipeline::job::Job;
+use polder::pipeline::job::LONGEST_RUNG;
 use polder::pipeline::job::MATCH_SIDES;
 use polder::pipeline::ordered::IN_FLIGHT_PER_WORKER;
 use polder::pipeline::ordered::in_order;
@@ -174,6 +175,7 @@ fn bytes_of(
         without: Vec::new(),
         // Small, so that seams are made.
         seam_budget_quads: 1500,
+        longest_rung: LONGEST_RUNG,
         match_sides: MATCH_SIDES,
         threads,
         force: false,

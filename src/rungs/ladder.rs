@@ -1,0 +1,280 @@
+//! Rungs laid one by one, each only if it keeps the promises beside all before it.
+
+use crate::geometry::point::Point;
+use crate::geometry::predicates::orient;
+use crate::noding::arrangement::Arrangement;
+use crate::noding::arrangement::Piece;
+use crate::partition::subdomains::Partition;
+use crate::rungs::ANGLE_DEG;
+use crate::rungs::CLEAR;
+use crate::rungs::CORNERS;
+use crate::rungs::LONGEST_WALK;
+use crate::rungs::Options;
+use crate::rungs::SHORTEST;
+use crate::rungs::SNAP;
+use crate::rungs::propose::Candidate;
+use crate::rungs::propose::nearest;
+use crate::rungs::web::Corner;
+use crate::rungs::web::Web;
+use crate::seams::clearance::Buckets;
+use crate::seams::clearance::distance_between;
+use rustc_hash::FxHashMap;
+use std::f64::consts::PI;
+
+/// An edge is split only if all edges that it does not touch are farther than this, cells: the
+/// rounding of the new node bends it by less than one.
+const SPLIT_CLEAR: f64 = 3.0;
+
+/// The arrangement while rungs are laid.
+pub(super) struct Ladder<'a> {
+    pub arrangement: &'a Arrangement,
+    pub web: Web,
+    /// Edges of the arrangement as given, by place.
+    pub walls: Buckets,
+    /// Size at each edge as given, and its least at each node, cells.
+    size_of: &'a [f64],
+    size_at: Vec<f64>,
+    options: Options,
+    /// Ends of the rungs, and the rungs by place.
+    laid: Vec<[u32; 2]>,
+    placed: Buckets,
+    /// All parts of the edges that were split.
+    parts: FxHashMap<u32, Vec<u32>>,
+}
+
+/// Where a rung would end.
+#[derive(Clone, Copy)]
+enum Foot {
+    /// At a node.
+    Node(u32),
+    /// Within an edge, which the half-edge has on the rung's side.
+    Within(u32),
+}
+
+impl<'a> Ladder<'a> {
+    pub fn new(
+        arrangement: &'a Arrangement,
+        partition: &Partition,
+        size_of: &'a [f64],
+        options: &Options,
+    ) -> Ladder<'a> {
+        let mut size_at = vec![f64::INFINITY; arrangement.points.len()];
+        for (edge, &size) in arrangement.edges.iter().zip(size_of) {
+            for &node in edge {
+                size_at[node as usize] = size_at[node as usize].min(size);
+            }
+        }
+        let largest = size_of.iter().copied().fold(1.0, f64::max);
+        Ladder {
+            arrangement,
+            web: Web::of(arrangement, partition),
+            walls: Buckets::of(arrangement, 2 * largest as i32),
+            size_of,
+            size_at,
+            options: *options,
+            laid: Vec::new(),
+            placed: Buckets::new(2 * largest as i32),
+            parts: FxHashMap::default(),
+        }
+    }
+
+    /// Number of rungs.
+    pub fn rungs(&self) -> usize {
+        self.laid.len()
+    }
+
+    /// Longest rung at a node, cells.
+    pub fn reach(&self, node: u32) -> f64 {
+        self.options.longest * self.size_at[node as usize]
+    }
+
+    /// Lays the candidate's rung if it keeps the promises.
+    pub fn lay(&mut self, candidate: Candidate) {
+        let Candidate { node, edge, .. } = candidate;
+        let at = self.web.points[node as usize];
+        let mut size = self.size_at[node as usize].min(self.size_of[edge as usize]);
+        let part = self.nearest_part(at, edge);
+        let (to, foot) = self.foot(at, part, SNAP * size);
+        if let Foot::Node(target) = foot
+            && let Some(&there) = self.size_at.get(target as usize)
+        {
+            size = size.min(there);
+        }
+        let length = at.distance(to);
+        if length < SHORTEST * size || length > self.options.longest * size {
+            return;
+        }
+        let Some(from) = self.roomy_corner(node, to) else {
+            return;
+        };
+        let Some(into) = self.foot_corner(node, foot, to) else {
+            return;
+        };
+        if !self.closes_blocks(&from, foot, &into) || !self.is_clear(candidate, to, foot, size) {
+            return;
+        }
+        let (target, into) = match foot {
+            Foot::Node(target) => (target, into.out),
+            Foot::Within(half) => {
+                let split = self.web.split(half, to);
+                let parts = self.parts.entry(edge).or_insert_with(|| vec![edge]);
+                parts.push(split.second);
+                (split.node, split.after)
+            }
+        };
+        self.web.bridge(from.out, into);
+        self.placed.insert(self.laid.len() as u32, [at, to]);
+        self.laid.push([node, target]);
+    }
+
+    /// The part of an edge that is nearest to a point now.
+    fn nearest_part(&self, at: Point, edge: u32) -> u32 {
+        let whole = [edge];
+        let parts = self.parts.get(&edge).map_or(&whole[..], Vec::as_slice);
+        let distance2 = |part: u32| nearest(at, self.web.ends(part)).1;
+        let best = parts
+            .iter()
+            .min_by(|&&p, &&q| distance2(p).total_cmp(&distance2(q)));
+        *best.expect("an edge has a part")
+    }
+
+    /// The place on `edge` nearest to `at`, or an end of the edge that is within `snap` of it.
+    fn foot(&self, at: Point, edge: u32, snap: f64) -> (Point, Foot) {
+        let ends = self.web.ends(edge);
+        let (foot, _) = nearest(at, ends);
+        let far = ends.map(|end| end.distance(foot));
+        let near = u32::from(far[1] < far[0]);
+        if far[near as usize] >= snap {
+            let is_right = orient(ends[0], ends[1], at) < 0;
+            return (foot, Foot::Within(2 * edge + u32::from(is_right)));
+        }
+        let node = self.web.tail[(2 * edge + near) as usize];
+        (ends[near as usize], Foot::Node(node))
+    }
+
+    /// The corner at `node` that looks towards `to`, if a rung leaves enough to both sides of it.
+    fn roomy_corner(&self, node: u32, to: Point) -> Option<Corner> {
+        let least = ANGLE_DEG.to_radians();
+        self.web
+            .corner(node, to)
+            .filter(|it| it.before_rad.min(it.after_rad) >= least)
+    }
+
+    /// The corner at the other end. Within an edge it is made up: `out` is the half-edge itself.
+    fn foot_corner(&self, node: u32, foot: Foot, to: Point) -> Option<Corner> {
+        let at = self.web.points[node as usize];
+        match foot {
+            Foot::Node(target) => {
+                let mut around = self.web.out[target as usize].iter();
+                if around.any(|&half| self.web.head(half) == node) {
+                    return None;
+                }
+                self.roomy_corner(target, at)
+            }
+            Foot::Within(half) => {
+                let before_rad = self.web.turn_from_rad(half, to, at);
+                let corner = Corner {
+                    out: half,
+                    before_rad,
+                    after_rad: PI - before_rad,
+                };
+                let least = ANGLE_DEG.to_radians();
+                let has_room = corner.before_rad.min(corner.after_rad) >= least;
+                (has_room && self.web.is_inside(half)).then_some(corner)
+            }
+        }
+    }
+
+    /// True if the walks that the rung would close have corners enough, or if it joins two walks.
+    fn closes_blocks(&self, from: &Corner, foot: Foot, into: &Corner) -> bool {
+        let stop = match foot {
+            Foot::Node(_) => into.out,
+            Foot::Within(half) => self.web.next[half as usize],
+        };
+        let ahead = [from.after_rad, into.before_rad];
+        let back = [from.before_rad, into.after_rad];
+        self.is_block(into.out, from.out, ahead) && self.is_block(from.out, stop, back)
+    }
+
+    /// Counts corners from the half-edge `first` until the one before `stop`; `ends` are the angles
+    /// at the rung. A walk that comes back without meeting `stop` is another one than the rung's
+    /// other end lies on: the rung joins the two.
+    fn is_block(&self, first: u32, stop: u32, ends: [f64; 2]) -> bool {
+        let flattest = PI - self.options.corner_deg.to_radians();
+        let is_corner = |angle: f64| angle < flattest;
+        let mut corners = ends.iter().filter(|&&angle| is_corner(angle)).count();
+        let mut half = first;
+        for _ in 0..LONGEST_WALK {
+            if corners >= CORNERS {
+                return true;
+            }
+            half = self.web.next[half as usize];
+            if half == stop {
+                return false;
+            }
+            if half == first {
+                return true;
+            }
+            corners += usize::from(is_corner(self.web.angle_rad(half)));
+        }
+        false
+    }
+
+    /// True if the rung is far enough from all that it does not touch, and a split does no harm.
+    fn is_clear(&self, candidate: Candidate, to: Point, foot: Foot, size: f64) -> bool {
+        let Candidate { node, edge, .. } = candidate;
+        let rung = [self.web.points[node as usize], to];
+        let clear = CLEAR * size;
+        let split = matches!(foot, Foot::Within(_));
+        let touches = |other: u32| match foot {
+            Foot::Node(target) => other == node || other == target,
+            Foot::Within(_) => other == node,
+        };
+        let is_apart = |ends: [u32; 2]| {
+            let there = ends.map(|it| self.web.points[it as usize]);
+            touches(ends[0]) || touches(ends[1]) || distance_between(rung, there) >= clear
+        };
+        let walls = self.walls.near(rung, clear);
+        let mut walls = walls.into_iter().filter(|&it| !(split && it == edge));
+        walls.all(|it| is_apart(self.arrangement.edges[it as usize]))
+            && (self.placed.near(rung, clear).into_iter())
+                .all(|it| is_apart(self.laid[it as usize]))
+            && (!split || self.may_be_split(edge))
+    }
+
+    fn may_be_split(&self, edge: u32) -> bool {
+        let nodes = self.arrangement.edges[edge as usize];
+        let place = |nodes: [u32; 2]| nodes.map(|it| self.web.points[it as usize]);
+        let near = self.walls.near(place(nodes), SPLIT_CLEAR);
+        near.into_iter().all(|other| {
+            let others = self.arrangement.edges[other as usize];
+            others.iter().any(|it| nodes.contains(it))
+                || distance_between(place(nodes), place(others)) >= SPLIT_CLEAR
+        })
+    }
+
+    /// The arrangement with all that was laid.
+    pub fn arrangement(&self) -> Arrangement {
+        let given = self.arrangement;
+        let mut edges: Vec<([u32; 2], Vec<Piece>)> =
+            Vec::with_capacity(given.edges.len() + 2 * self.laid.len());
+        for edge in 0..given.edges.len() as u32 {
+            let Some(parts) = self.parts.get(&edge) else {
+                let pieces = given.pieces_of(edge).to_vec();
+                edges.push((given.edges[edge as usize], pieces));
+                continue;
+            };
+            let [a, b] = given.edges[edge as usize].map(|it| self.web.points[it as usize]);
+            for &part in parts {
+                let ends = [0, 1].map(|k| {
+                    let node = self.web.tail[(2 * part + k) as usize];
+                    let p = self.web.points[node as usize];
+                    (node, a.distance(p) / (a.distance(p) + b.distance(p)))
+                });
+                edges.push(given.part_of(edge, ends[0], ends[1]));
+            }
+        }
+        edges.extend(self.laid.iter().map(|&nodes| (nodes, Vec::new())));
+        Arrangement::from_parts(&self.web.points, edges)
+    }
+}

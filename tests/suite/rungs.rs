@@ -1,0 +1,277 @@
+//! Tests of `rungs`.
+
+use polder::domain::line::Domain;
+use polder::domain::line::Line;
+use polder::domain::line::Role;
+use polder::domain::size::SizeWish;
+use polder::geometry::grid::Grid;
+use polder::geometry::point::Point;
+use polder::noding;
+use polder::noding::arrangement::Arrangement;
+use polder::partition;
+use polder::partition::partition;
+use polder::partition::subdomains::Partition;
+use polder::rungs;
+use polder::rungs::Options;
+use polder::rungs::lay;
+use proptest::prelude::*;
+
+/// Cells in a size.
+const SIZE: f64 = 1000.0;
+const SIZE_M: f64 = 10.0;
+
+const OPTIONS: Options = Options {
+    longest: 0.8,
+    corner_deg: 30.0,
+};
+
+/// Coordinates in sizes.
+type At = (f64, f64);
+
+fn domain(lines: &[(Role, Vec<At>)]) -> Domain {
+    let cells = |v: f64| (v * SIZE).round() as i32;
+    let line = |(source, (role, points)): (usize, &(Role, Vec<At>))| Line {
+        source: source as u32,
+        role: *role,
+        kind: 0,
+        name: String::new(),
+        points: (points.iter())
+            .map(|&(x, y)| Point::new(cells(x), cells(y)))
+            .collect(),
+    };
+    Domain {
+        grid: Grid {
+            origin_m: [1000.0, 2000.0],
+            cell_m: SIZE_M / SIZE,
+        },
+        epsg: None,
+        kinds: vec![String::new()],
+        lines: lines.iter().enumerate().map(line).collect(),
+        digest: 0,
+    }
+}
+
+fn ring(role: Role, points: &[At]) -> (Role, Vec<At>) {
+    (role, points.iter().chain(&points[..1]).copied().collect())
+}
+
+fn rectangle(width: f64, height: f64) -> (Role, Vec<At>) {
+    let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)];
+    ring(Role::Boundary, &corners)
+}
+
+fn line(points: &[At]) -> (Role, Vec<At>) {
+    (Role::Constraint, points.to_vec())
+}
+
+struct Laid {
+    rungs: u64,
+    before: Partition,
+    after: Partition,
+    arrangement: Arrangement,
+}
+
+fn partitioned(domain: &Domain, arrangement: &Arrangement) -> Partition {
+    let options = partition::Options {
+        corner_deg: 30.0,
+        tile_cells: 1 << 22,
+    };
+    let made = partition(domain, arrangement, &options).unwrap();
+    let whole = partition::check::check(domain, arrangement, &made);
+    assert_eq!(whole, Ok(()));
+    made
+}
+
+/// Length of each line in the arrangement, by its stations.
+fn covered_m(domain: &Domain, arrangement: &Arrangement) -> Vec<f64> {
+    let mut length = vec![0.0; domain.lines.len()];
+    for piece in &arrangement.pieces {
+        length[piece.line as usize] += (piece.to_m - piece.from_m).abs();
+    }
+    length
+}
+
+/// Lays rungs and verifies every promise.
+fn lay_well(lines: &[(Role, Vec<At>)]) -> Laid {
+    let domain = domain(lines);
+    let sizes = SizeWish::uniform(SIZE_M, 1);
+    let options = noding::Options {
+        tile_cells: 1 << 22,
+    };
+    let arrangement = noding::clip(&domain, noding::node(&domain, &options)).0;
+    let before = partitioned(&domain, &arrangement);
+    let runged = lay(&domain, &sizes, &arrangement, &before, &OPTIONS);
+    assert_eq!(noding::check::check(&runged.arrangement), Ok(()));
+    let checked = rungs::check::check(&domain, &sizes, &runged.arrangement, &OPTIONS);
+    assert_eq!(checked, Ok(()));
+    let after = partitioned(&domain, &runged.arrangement);
+    check_blocks(&runged.arrangement, &after);
+    let is_kept = |p: &Point| runged.arrangement.points.binary_search(p).is_ok();
+    assert!(arrangement.points.iter().all(is_kept));
+    let lengths = [&arrangement, &runged.arrangement].map(|it| covered_m(&domain, it));
+    for (old, new) in lengths[0].iter().zip(&lengths[1]) {
+        assert!((old - new).abs() < 1e-6);
+    }
+    let made = (runged.arrangement.piece_start.windows(2)).filter(|it| it[0] == it[1]);
+    assert_eq!(made.count() as u64, runged.rungs);
+    Laid {
+        rungs: runged.rungs,
+        before,
+        after,
+        arrangement: runged.arrangement,
+    }
+}
+
+/// Promise 4, from the partition alone: walks with a rung on them have four corners, but if a rung
+/// has joined two walks, or if they are long.
+fn check_blocks(arrangement: &Arrangement, partition: &Partition) {
+    for subdomain in &partition.subdomains {
+        for walk in &subdomain.walks {
+            let curves = || {
+                walk.iter()
+                    .map(|half| &partition.curves[(half >> 1) as usize])
+            };
+            let divides = |side: u32| {
+                curves()
+                    .any(|it| it.is_seam && it.left != it.right && side == it.left.min(it.right))
+            };
+            let sides = curves()
+                .map(|it| it.left.min(it.right))
+                .filter(|&it| divides(it));
+            let mut nodes: Vec<u32> = Vec::new();
+            for half in walk {
+                let chain = &partition.curves[(half >> 1) as usize].nodes;
+                let mut chain = chain.clone();
+                if half & 1 == 1 {
+                    chain.reverse();
+                }
+                nodes.extend(&chain[..chain.len() - 1]);
+            }
+            if sides.count() == 0 || nodes.len() > rungs::LONGEST_WALK {
+                continue;
+            }
+            let n = nodes.len();
+            let at = |k: usize| arrangement.points[nodes[k % n] as usize];
+            let corner = |k: &usize| {
+                let (a, b, c) = (at(k + n - 1), at(*k), at(k + 1));
+                let (ux, uy) = (f64::from(b.x - a.x), f64::from(b.y - a.y));
+                let (vx, vy) = (f64::from(c.x - b.x), f64::from(c.y - b.y));
+                let turn = (ux * vy - uy * vx).atan2(ux * vx + uy * vy).to_degrees();
+                // A tip turns by half a circle, to the right as seen from inside.
+                turn > 30.0 - 0.2 && a != c
+            };
+            assert!((0..n).filter(corner).count() >= 4, "a walk of {n} edges");
+        }
+    }
+}
+
+#[test]
+fn open_country_has_no_rungs() {
+    let made = lay_well(&[rectangle(9.0, 7.0), line(&[(2.0, 3.0), (6.0, 4.0)])]);
+    assert_eq!(made.rungs, 0);
+    assert_eq!(made.before, made.after);
+}
+
+/// A street of half a size: each junction on one side gets a rung to the other.
+#[test]
+fn junctions_get_rungs_across_a_corridor() {
+    let mut lines = vec![rectangle(20.0, 10.5), line(&[(0.0, 5.0), (20.0, 5.0)])];
+    lines.push(line(&[(0.0, 5.5), (20.0, 5.5)]));
+    for x in [4.0, 9.0, 13.0] {
+        lines.push(line(&[(x, 0.0), (x, 5.0)]));
+    }
+    let made = lay_well(&lines);
+    assert_eq!(made.rungs, 3);
+    assert_eq!(
+        made.after.subdomains.len(),
+        made.before.subdomains.len() + 3
+    );
+    let foot = Point::new(4000, 5500);
+    assert!(made.arrangement.points.binary_search(&foot).is_ok());
+}
+
+/// Junctions that nearly face each other share a rung.
+#[test]
+fn a_rung_goes_to_a_node_that_is_near_its_foot() {
+    let mut lines = vec![rectangle(20.0, 10.5), line(&[(0.0, 5.0), (20.0, 5.0)])];
+    lines.push(line(&[(0.0, 5.5), (20.0, 5.5)]));
+    lines.push(line(&[(8.0, 0.0), (8.0, 5.0)]));
+    lines.push(line(&[(8.3, 10.5), (8.3, 5.5)]));
+    assert_eq!(lay_well(&lines).rungs, 1);
+}
+
+/// The inner corner of a bend has a rung to each outer side, so that the bend is one square.
+#[test]
+fn a_bend_gets_two_rungs() {
+    let outer = [
+        (0.0, 0.0),
+        (9.0, 0.0),
+        (9.0, 9.0),
+        (8.5, 9.0),
+        (8.5, 0.5),
+        (0.0, 0.5),
+    ];
+    let made = lay_well(&[ring(Role::Boundary, &outer)]);
+    assert_eq!((made.rungs, made.after.subdomains.len()), (2, 3));
+}
+
+/// The court around a building is one walk after its first rung.
+#[test]
+fn rungs_cut_the_ring_around_a_building() {
+    let wall = [(0.5, 0.5), (6.5, 0.5), (6.5, 4.5), (0.5, 4.5)];
+    let made = lay_well(&[rectangle(7.0, 5.0), ring(Role::Hole, &wall)]);
+    assert_eq!((made.rungs, made.after.subdomains.len()), (8, 8));
+}
+
+/// Any rung would close a triangle with the tip.
+#[test]
+fn a_wedge_has_no_rungs() {
+    let mut wedge = vec![(0.0, 0.0)];
+    wedge.extend((1..6).map(|k| (f64::from(k) * 1.1, 0.0)));
+    wedge.push((6.0, 1.3));
+    let mut lines = vec![ring(Role::Boundary, &wedge)];
+    lines.extend((1..6).map(|k| line(&[(f64::from(k) * 1.1, 0.0), (f64::from(k) * 1.1, -0.1)])));
+    assert_eq!(lay_well(&lines).rungs, 0);
+}
+
+/// A slit that ends shortly before a wall is prolonged to it.
+#[test]
+fn a_slit_is_prolonged_to_a_near_wall() {
+    let made = lay_well(&[rectangle(8.0, 6.0), line(&[(4.0, 0.0), (4.0, 5.4)])]);
+    assert_eq!((made.rungs, made.after.subdomains.len()), (1, 2));
+}
+
+/// Streets with banks: polylines, each with a parallel at a random distance, and lines across.
+fn streets() -> impl Strategy<Value = Vec<(Role, Vec<At>)>> {
+    let street = (
+        prop::collection::vec((-14.0..14.0, -14.0..14.0), 2..5),
+        0.1..0.9,
+    );
+    let across = (-14.0..14.0, -14.0..14.0, -6.0..6.0, -6.0..6.0);
+    let all = (
+        prop::collection::vec(street, 1..5),
+        prop::collection::vec(across, 0..12),
+    );
+    all.prop_map(|(streets, across)| {
+        let square = [(-15.0, -15.0), (15.0, -15.0), (15.0, 15.0), (-15.0, 15.0)];
+        let mut lines = vec![ring(Role::Boundary, &square)];
+        for (way, width) in streets {
+            let bank: Vec<At> = way
+                .iter()
+                .map(|&(x, y)| (x + width, y + 0.6 * width))
+                .collect();
+            lines.extend([line(&way), line(&bank)]);
+        }
+        lines.extend((across.iter()).map(|&(x, y, dx, dy)| line(&[(x, y), (x + dx, y + dy)])));
+        lines
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn promises_hold_between_any_streets(lines in streets()) {
+        lay_well(&lines);
+    }
+}
