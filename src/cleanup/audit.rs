@@ -180,7 +180,7 @@ fn is_a_node(graph: &Graph, line: LineId, from_m: f64, to_m: f64) -> bool {
     }
     let mut way: Vec<Xy> = vec![graph.measure.point(line, from_m)];
     let piece = Piece { line, from_m, to_m };
-    graph.measure.visit_vertices(&piece, |p| way.push(p));
+    way.extend(graph.measure.vertices(&piece));
     way.push(graph.measure.point(line, to_m));
     let cell_m = graph.measure.grid().cell_m;
     let mut found = Vec::new();
@@ -198,13 +198,15 @@ fn is_a_node(graph: &Graph, line: LineId, from_m: f64, to_m: f64) -> bool {
 fn displacements(graph: &Graph) -> Tally {
     // distance, its share of the size, length
     let mut samples: Vec<[f64; 3]> = Vec::new();
+    // at vertices, which have no length
+    let mut worst = [0.0_f64; 2];
     for edge in graph.edges.iter().filter(|edge| edge.alive) {
         let [a, b] = edge.ends.map(|node| graph.metres(node));
         for piece in &edge.pieces {
             let size_m = graph.measure.size_m[piece.line as usize];
             let (low, high) = (piece.from_m.min(piece.to_m), piece.from_m.max(piece.to_m));
             let mut way: Vec<Xy> = vec![graph.measure.point(piece.line, low)];
-            graph.measure.visit_vertices(piece, |p| way.push(p));
+            way.extend(graph.measure.vertices(piece));
             way.push(graph.measure.point(piece.line, high));
             for pair in way.windows(2) {
                 let [u, v] = [pair[0], pair[1]];
@@ -218,13 +220,14 @@ fn displacements(graph: &Graph) -> Tally {
                 }
                 for p in [u, v] {
                     let away = to_segment(p, a, b).0;
-                    samples.push([away, away / size_m, 0.0]);
+                    worst = [worst[0].max(away), worst[1].max(away / size_m)];
                 }
             }
         }
     }
-    let [displacement_max_m, displacement_p99_m] = extremes(&mut samples, 0);
-    let [displacement_max_over_size, displacement_p99_over_size] = extremes(&mut samples, 1);
+    let [displacement_max_m, displacement_p99_m] = extremes(&mut samples, 0, worst[0]);
+    let [displacement_max_over_size, displacement_p99_over_size] =
+        extremes(&mut samples, 1, worst[1]);
     Tally {
         displacement_max_m,
         displacement_p99_m,
@@ -234,16 +237,17 @@ fn displacements(graph: &Graph) -> Tally {
     }
 }
 
-/// Largest value and 99 % quantile by length of one column of the samples.
-fn extremes(samples: &mut [[f64; 3]], column: usize) -> [f64; 2] {
-    samples.sort_by(|a, b| a[column].total_cmp(&b[column]).then(a[2].total_cmp(&b[2])));
+/// Largest value, at least `worst`, and 99 % quantile by length of one column of the samples.
+fn extremes(samples: &mut [[f64; 3]], column: usize, worst: f64) -> [f64; 2] {
+    samples.sort_unstable_by(|a, b| a[column].total_cmp(&b[column]).then(a[2].total_cmp(&b[2])));
     let total: f64 = samples.iter().map(|it| it[2]).sum();
     let mut below = 0.0;
     let p99 = samples.iter().find(|it| {
         below += it[2];
         below >= 0.99 * total
     });
-    [samples.last(), p99].map(|it| it.map_or(0.0, |it| it[column]))
+    let [last, p99] = [samples.last(), p99].map(|it| it.map_or(0.0, |it| it[column]));
+    [last.max(worst), p99]
 }
 
 fn rows(graph: &Graph) -> Vec<(&'static str, u64, f64)> {

@@ -9,7 +9,7 @@ use crate::cleanup::separate::join;
 use crate::cleanup::separate::unite;
 use crate::cleanup::steps::Step;
 use crate::cleanup::wedges::angle_deg;
-use crate::cleanup::wedges::sorted_star;
+use crate::geometry::predicates::by_angle;
 use crate::geometry::predicates::orient;
 
 /// Which faces are closed, in shares of the local mesh size.
@@ -92,11 +92,17 @@ fn walk(
     side: usize,
     thin: &Thin,
 ) -> Option<Face> {
-    let (mut edge, mut side) = (edge, side);
+    let start = (edge, side);
+    let (mut edge, mut side) = start;
     let (mut walk, mut area, mut length, mut size) = (Vec::new(), 0.0, 0.0, f64::INFINITY);
-    let is_inside = graph.edges[edge as usize].inside[side];
+    if !graph.edges[edge as usize].inside[side] {
+        return None;
+    }
     let origin = graph.metres(graph.edges[edge as usize].ends[side]);
     while !seen[edge as usize][side] {
+        if walk.len() == WALK_MAX {
+            return None;
+        }
         seen[edge as usize][side] = true;
         let it = &graph.edges[edge as usize];
         let (a, b) = (graph.metres(it.ends[side]), graph.metres(it.ends[1 - side]));
@@ -108,8 +114,9 @@ fn walk(
         side = usize::from(graph.edges[leaves as usize].ends[0] != at);
         edge = leaves;
     }
-    let is_whole = walk.iter().all(|&(edge, _)| graph.may_change(edge));
-    if !is_whole || !is_inside || area <= 0.0 || walk.len() > WALK_MAX {
+    // else it came into a face that is too long
+    let is_whole = (edge, side) == start;
+    if !is_whole || area <= 0.0 || !walk.iter().all(|&(edge, _)| graph.may_change(edge)) {
         return None;
     }
     let width = area / length / size;
@@ -127,12 +134,22 @@ pub(super) fn leaving(graph: &Graph, edge: u32, node: u32) -> u32 {
     if let [e, f] = graph.star[node as usize][..] {
         return if e == edge { f } else { e };
     }
-    let star = sorted_star(graph, node);
-    let at = star
-        .iter()
-        .position(|&it| it == edge)
-        .expect("an edge is in its star");
-    star[(at + star.len() - 1) % star.len()]
+    let at = graph.point(node);
+    let away = |edge: u32| {
+        let end = graph.point(graph.edges[edge as usize].other(node));
+        (
+            i64::from(end.x) - i64::from(at.x),
+            i64::from(end.y) - i64::from(at.y),
+        )
+    };
+    let turn = |e: u32, f: u32| by_angle(away(e), away(f));
+    // the last before it, or the last of all
+    let others = (graph.star[node as usize].iter().copied()).filter(|&it| it != edge);
+    let next = others.max_by(|&e, &f| {
+        let is_before = |it: u32| turn(it, edge).is_lt();
+        is_before(e).cmp(&is_before(f)).then_with(|| turn(e, f))
+    });
+    next.unwrap_or(edge)
 }
 
 /// How many corners a walk has where it turns left.
@@ -214,7 +231,7 @@ fn drop_loop(graph: &mut Graph, face: &Face) -> bool {
     }
     let at = graph.point(face.walk[0].1);
     for &(edge, _) in &face.walk {
-        if let Some(edge) = graph.current(edge) {
+        if graph.is_there(edge) {
             graph.delete(edge, Reason::SmallLoop);
         }
     }

@@ -27,7 +27,8 @@
 //! district does, no other one sees.
 //!
 //! # Cost
-//! O(n log n) for cutting and joining n edges. The last pass looks at a few per cent of the nodes.
+//! O(n log n) for cutting and joining n edges. The last pass looks at the nodes that were tied, some
+//! tenth of all, and at those that it changes; relaxation stays with these.
 
 use crate::cleanup::Cleaned;
 use crate::cleanup::Options;

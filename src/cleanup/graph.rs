@@ -2,6 +2,7 @@
 
 use smallvec::SmallVec;
 
+use crate::cleanup::attempt::Deed;
 use crate::cleanup::changes::Change;
 use crate::cleanup::changes::Dropped;
 use crate::cleanup::changes::Reason;
@@ -35,6 +36,7 @@ pub(super) struct Edge {
 }
 
 impl Edge {
+    #[inline]
     pub(super) fn other(&self, node: u32) -> u32 {
         self.ends[usize::from(self.ends[0] == node)]
     }
@@ -105,7 +107,7 @@ pub(super) struct Graph<'a> {
     bounds: Option<Window>,
     pub(super) at: Vec<Point>,
     /// What may be done with each node.
-    stand: Vec<Stand>,
+    pub(super) stand: Vec<Stand>,
     /// Edges at each node.
     pub(super) star: Vec<SmallVec<[u32; 4]>>,
     pub(super) edges: Vec<Edge>,
@@ -114,6 +116,8 @@ pub(super) struct Graph<'a> {
     pub(super) touched: Vec<u32>,
     pub(super) changes: Vec<Change>,
     pub(super) dropped: Vec<Dropped>,
+    /// Of the attempt under way, if there is one.
+    pub(super) deeds: Option<Vec<Deed>>,
 }
 
 impl<'a> Graph<'a> {
@@ -143,6 +147,7 @@ impl<'a> Graph<'a> {
             touched: Vec::new(),
             changes: Vec::new(),
             dropped: Vec::new(),
+            deeds: None,
             at,
         }
     }
@@ -160,20 +165,48 @@ impl<'a> Graph<'a> {
             rank,
             alive: true,
         });
-        for node in ends {
-            self.star[node as usize].push(id);
-            self.touch(node);
-        }
-        self.index
-            .insert(id, self.at[ends[0] as usize], self.at[ends[1] as usize]);
+        self.link(id);
+        ends.iter().for_each(|&node| self.touch(node));
+        self.did(Deed::Added);
         id
     }
 
+    /// Makes the edge known to its ends and to the index.
+    pub(super) fn link(&mut self, edge: u32) {
+        let ends = self.edges[edge as usize].ends;
+        for node in ends {
+            self.star[node as usize].push(edge);
+        }
+        let [a, b] = ends.map(|node| self.point(node));
+        self.index.insert(edge, a, b);
+    }
+
+    /// Makes its ends and the index forget the edge.
+    pub(super) fn unlink(&mut self, edge: u32) {
+        let ends = self.edges[edge as usize].ends;
+        for node in ends {
+            self.star[node as usize].retain(|held| *held != edge);
+        }
+        let [a, b] = ends.map(|node| self.point(node));
+        self.index.remove(edge, a, b);
+    }
+
+    /// Puts a node to another place, with its edges.
+    pub(super) fn place(&mut self, node: u32, to: Point) {
+        let from = std::mem::replace(&mut self.at[node as usize], to);
+        for &edge in &self.star[node as usize] {
+            let end = self.at[self.edges[edge as usize].other(node) as usize];
+            self.index.remove(edge, from, end);
+            self.index.insert(edge, to, end);
+        }
+    }
+
     /// Something changed at this node: it is to be looked at again.
-    fn touch(&mut self, node: u32) {
+    pub(super) fn touch(&mut self, node: u32) {
         self.touched.push(node);
         if self.stand[node as usize] == Stand::Settled {
             self.stand[node as usize] = Stand::Open;
+            self.did(Deed::Woken(node));
         }
     }
 
@@ -182,6 +215,7 @@ impl<'a> Graph<'a> {
         self.at.push(p);
         self.stand.push(Stand::Open);
         self.star.push(SmallVec::new());
+        self.did(Deed::AddedNode);
         self.at.len() as u32 - 1
     }
 
@@ -190,6 +224,7 @@ impl<'a> Graph<'a> {
     }
 
     /// True if a node may move or go.
+    #[inline]
     pub(super) fn is_free(&self, node: u32) -> bool {
         self.stand[node as usize] != Stand::Tied
     }
@@ -222,15 +257,12 @@ impl<'a> Graph<'a> {
 
     /// Takes the edge out; its record stays, dead.
     pub(super) fn remove(&mut self, edge: u32) {
+        self.unlink(edge);
         let it = &mut self.edges[edge as usize];
         it.alive = false;
         let ends = it.ends;
-        for node in ends {
-            self.star[node as usize].retain(|held| *held != edge);
-            self.touch(node);
-        }
-        self.index
-            .remove(edge, self.at[ends[0] as usize], self.at[ends[1] as usize]);
+        ends.iter().for_each(|&node| self.touch(node));
+        self.did(Deed::Removed(edge));
     }
 
     /// Takes the edge out for good, with a row for every piece.
@@ -305,6 +337,7 @@ impl<'a> Graph<'a> {
     }
 
     /// The edge between two nodes.
+    #[inline]
     pub(super) fn find(&self, u: u32, v: u32) -> Option<u32> {
         let (u, v) = if self.star[u as usize].len() <= self.star[v as usize].len() {
             (u, v)
@@ -317,20 +350,17 @@ impl<'a> Graph<'a> {
             .find(|&e| self.edges[e as usize].other(u) == v)
     }
 
-    /// The edge itself, or the one that replaced it between the same nodes: what is tried and taken
-    /// back leaves equal edges with new ids.
-    pub(super) fn current(&self, edge: u32) -> Option<u32> {
-        let it = &self.edges[edge as usize];
-        if it.alive {
-            return Some(edge);
-        }
-        self.find(it.ends[0], it.ends[1])
+    #[inline]
+    pub(super) fn is_there(&self, edge: u32) -> bool {
+        self.edges[edge as usize].alive
     }
 
+    #[inline]
     pub(super) fn point(&self, node: u32) -> Point {
         self.at[node as usize]
     }
 
+    #[inline]
     pub(super) fn metres(&self, node: u32) -> Xy {
         self.measure.metres(self.at[node as usize])
     }
@@ -347,12 +377,14 @@ impl<'a> Graph<'a> {
             .collect()
     }
 
+    #[inline]
     pub(super) fn ends_m(&self, edge: u32) -> (Xy, Xy) {
         let [a, b] = self.edges[edge as usize].ends;
         (self.metres(a), self.metres(b))
     }
 
     /// Least wished edge length of the edges at a node, metres.
+    #[inline]
     pub(super) fn size_at_m(&self, node: u32) -> f64 {
         let star = &self.star[node as usize];
         let sizes = star.iter().map(|&e| self.edges[e as usize].size_m);

@@ -72,8 +72,10 @@ impl Index {
                 return;
             };
             for it in &block[within(cell)] {
-                let aside = it.max.x < left || it.min.x > right;
-                if !(aside || it.max.y < bottom || it.min.y > top) {
+                // one branch for all four: it is taken by few
+                let is_aside =
+                    (it.max.x < left) | (it.min.x > right) | (it.max.y < bottom) | (it.min.y > top);
+                if !is_aside {
                     found.push(it.edge);
                 }
             }
@@ -99,6 +101,12 @@ fn within((column, row): (i32, i32)) -> usize {
     (((row & low) << BLOCK) | (column & low)) as usize
 }
 
+/// The next integer below; without a call, which `f64::floor` is on machines of no certain age.
+fn floor(v: f64) -> i32 {
+    let cut = v as i32;
+    cut - i32::from(f64::from(cut) > v)
+}
+
 /// Calls `visit` for every cell within `margin` of the segment: column by column, the rows that
 /// the segment passes inside the column widened by the margin.
 fn passed(side: f64, p: Point, q: Point, margin: f64, mut visit: impl FnMut((i32, i32))) {
@@ -106,7 +114,7 @@ fn passed(side: f64, p: Point, q: Point, margin: f64, mut visit: impl FnMut((i32
     let (ax, ay) = (f64::from(a.x), f64::from(a.y));
     let (bx, by) = (f64::from(b.x), f64::from(b.y));
     let per_side = 1.0 / side;
-    let cell = |v: f64| (v * per_side).floor() as i32;
+    let cell = |v: f64| floor(v * per_side);
     let (low, high) = (ay.min(by), ay.max(by));
     let (first, last) = (cell(ax - margin), cell(bx + margin));
     let (bottom, top) = (cell(low - margin), cell(high + margin));

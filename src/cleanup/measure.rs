@@ -17,8 +17,8 @@ use crate::noding::arrangement::Piece;
 /// The input lines with their stations, sizes, ranks and tolerances, in metres.
 pub(super) struct Measure<'a> {
     pub(super) domain: &'a Domain,
-    /// Stations of the vertices of all lines; line `i` starts at `start[i]`.
-    stations_m: Vec<f64>,
+    /// The vertices of all lines; line `i` starts at `start[i]`.
+    vertices: Vec<Vertex>,
     start: Vec<u32>,
     /// How far each line may be from its edges.
     pub(super) tolerance_m: Vec<f64>,
@@ -38,6 +38,14 @@ pub(super) struct Measure<'a> {
     pub(super) default_m: f64,
 }
 
+/// A vertex of an input line; together, as they are always read together.
+#[derive(Clone, Copy, Debug)]
+struct Vertex {
+    /// Way along the line, metres.
+    station_m: f64,
+    at: Xy,
+}
+
 /// Added to the rank of rings.
 pub(super) const RIM_RANK: f64 = 1e13;
 /// Added to the rank of held lines.
@@ -51,7 +59,7 @@ impl<'a> Measure<'a> {
     pub(super) fn new(domain: &'a Domain, sizes: &SizeWish, options: &Options) -> Measure<'a> {
         let mut made = Measure {
             domain,
-            stations_m: Vec::new(),
+            vertices: Vec::new(),
             start: vec![0],
             tolerance_m: Vec::with_capacity(domain.lines.len()),
             size_m: Vec::with_capacity(domain.lines.len()),
@@ -63,10 +71,15 @@ impl<'a> Measure<'a> {
             default_m: sizes.default_m,
         };
         for (id, line) in domain.lines.iter().enumerate() {
-            let mut stations = domain.stations_m(id as LineId);
+            let stations = domain.stations_m(id as LineId);
             let length = *stations.last().expect("a line has two points");
-            made.stations_m.append(&mut stations);
-            made.start.push(made.stations_m.len() as u32);
+            let vertices = stations.iter().zip(&line.points);
+            made.vertices
+                .extend(vertices.map(|(&station_m, &p)| Vertex {
+                    station_m,
+                    at: domain.grid.local_m(p),
+                }));
+            made.start.push(made.vertices.len() as u32);
             let kind = usize::from(line.kind);
             made.size_m.push(sizes.by_kind_m[kind]);
             made.tolerance_m.push(options.tolerance_m(sizes, kind));
@@ -118,50 +131,41 @@ impl<'a> Measure<'a> {
         self.domain.lines[line as usize].role != Role::Constraint
     }
 
-    fn stations(&self, line: LineId) -> &[f64] {
+    #[inline]
+    fn vertices_of(&self, line: LineId) -> &[Vertex] {
         let line = line as usize;
-        &self.stations_m[self.start[line] as usize..self.start[line + 1] as usize]
-    }
-
-    fn vertex(&self, line: LineId, k: usize) -> Xy {
-        self.grid()
-            .local_m(self.domain.lines[line as usize].points[k])
+        &self.vertices[self.start[line] as usize..self.start[line + 1] as usize]
     }
 
     /// Length of a line as read, metres.
     pub(super) fn length_m(&self, line: LineId) -> f64 {
-        self.stations_m[self.start[line as usize + 1] as usize - 1]
+        self.vertices[self.start[line as usize + 1] as usize - 1].station_m
     }
 
     /// The point of `line` at `station_m`.
     pub(super) fn point(&self, line: LineId, station_m: f64) -> Xy {
-        let stations = self.stations(line);
-        let k = stations.partition_point(|&s| s <= station_m);
-        let k = k.clamp(1, stations.len() - 1) - 1;
-        self.between(line, k, station_m)
-    }
-
-    fn between(&self, line: LineId, k: usize, station_m: f64) -> Xy {
-        let stations = self.stations(line);
-        let (a, b) = (self.vertex(line, k), self.vertex(line, k + 1));
-        let t = ((station_m - stations[k]) / (stations[k + 1] - stations[k])).clamp(0.0, 1.0);
-        [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
+        let vertices = self.vertices_of(line);
+        let k = vertices.partition_point(|it| it.station_m <= station_m);
+        let k = k.clamp(1, vertices.len() - 1);
+        between(vertices[k - 1], vertices[k], station_m)
     }
 
     /// True if the line as read turns there at a corner: by more than the corner angle, between
     /// segments that are long enough to be edges, within [`AT_CORNER`] of the station.
     pub(super) fn is_corner(&self, line: LineId, station_m: f64) -> bool {
-        let stations = self.stations(line);
-        let last = stations.len() - 1;
+        let vertices = self.vertices_of(line);
+        let last = vertices.len() - 1;
         let size_m = self.size_m[line as usize];
-        let next = stations.partition_point(|&s| s < station_m).min(last);
+        let next = vertices.partition_point(|it| it.station_m < station_m);
+        let next = next.min(last);
         let before = next.saturating_sub(1);
-        let k = if station_m - stations[before] < stations[next] - station_m {
+        let away = |k: usize| (vertices[k].station_m - station_m).abs();
+        let k = if away(before) < away(next) {
             before
         } else {
             next
         };
-        if (stations[k] - station_m).abs() > AT_CORNER * size_m {
+        if away(k) > AT_CORNER * size_m {
             return false;
         }
         let (before, after) = match k {
@@ -169,7 +173,7 @@ impl<'a> Measure<'a> {
             _ if self.is_closed(line) => (last - 1, 1),
             _ => return false,
         };
-        let [a, o, b] = [before, k, after].map(|k| self.vertex(line, k));
+        let [a, o, b] = [before, k, after].map(|k| vertices[k].at);
         let (u, v) = ([o[0] - a[0], o[1] - a[1]], [b[0] - o[0], b[1] - o[1]]);
         let (cross, dot) = (u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
         let least_m = self.min_edge * size_m;
@@ -182,40 +186,40 @@ impl<'a> Measure<'a> {
     /// stretch is farthest at a vertex; and between two ends that are near, the stretch passes
     /// over all of the edge.
     pub(super) fn deviation_m(&self, piece: &Piece, a: Xy, b: Xy) -> f64 {
-        let mut worst = distance(self.point(piece.line, piece.from_m), a)
+        let ends = distance(self.point(piece.line, piece.from_m), a)
             .max(distance(self.point(piece.line, piece.to_m), b));
-        self.visit_vertices(piece, |p| worst = worst.max(to_segment(p, a, b).0));
-        worst
+        let aside = self.vertices(piece).map(|p| to_segment(p, a, b).0);
+        aside.fold(ends, f64::max)
     }
 
     /// True if [`Measure::deviation_m`] is at most `share` of the line's tolerance.
     pub(super) fn fits(&self, piece: &Piece, a: Xy, b: Xy, share: f64) -> bool {
         let limit = share * self.tolerance_m[piece.line as usize];
-        self.deviation_m(piece, a, b) <= limit
+        distance(self.point(piece.line, piece.from_m), a) <= limit
+            && distance(self.point(piece.line, piece.to_m), b) <= limit
+            && (self.vertices(piece)).all(|p| to_segment(p, a, b).0 <= limit)
     }
 
     /// The vertices of the line strictly inside the stretch, in the direction of the line.
-    pub(super) fn visit_vertices(&self, piece: &Piece, mut visit: impl FnMut(Xy)) {
+    pub(super) fn vertices(&self, piece: &Piece) -> impl Iterator<Item = Xy> {
         let (low, high) = (piece.from_m.min(piece.to_m), piece.from_m.max(piece.to_m));
-        let stations = self.stations(piece.line);
-        let from = stations.partition_point(|&s| s <= low);
-        for k in from..stations.len() {
-            if stations[k] >= high {
-                break;
-            }
-            visit(self.vertex(piece.line, k));
-        }
+        let vertices = self.vertices_of(piece.line);
+        let from = vertices.partition_point(|it| it.station_m <= low);
+        (vertices[from..].iter())
+            .take_while(move |it| it.station_m < high)
+            .map(|it| it.at)
     }
 
     /// The station between `low_m` and `high_m` whose point is nearest to `p`.
     pub(super) fn nearest(&self, line: LineId, low_m: f64, high_m: f64, p: Xy) -> f64 {
-        let stations = self.stations(line);
-        let first = stations.partition_point(|&s| s <= low_m);
-        let mut k = first.clamp(1, stations.len() - 1) - 1;
+        let vertices = self.vertices_of(line);
+        let first = vertices.partition_point(|it| it.station_m <= low_m);
+        let mut k = first.clamp(1, vertices.len() - 1) - 1;
         let mut best = (f64::INFINITY, low_m);
-        while k + 1 < stations.len() && stations[k] < high_m {
-            let (from, to) = (stations[k].max(low_m), stations[k + 1].min(high_m));
-            let (a, b) = (self.between(line, k, from), self.between(line, k, to));
+        while k + 1 < vertices.len() && vertices[k].station_m < high_m {
+            let (one, next) = (vertices[k], vertices[k + 1]);
+            let (from, to) = (one.station_m.max(low_m), next.station_m.min(high_m));
+            let (a, b) = (between(one, next, from), between(one, next, to));
             let (away, t) = to_segment(p, a, b);
             if away < best.0 {
                 best = (away, from + t * (to - from));
@@ -232,9 +236,17 @@ impl<'a> Measure<'a> {
     }
 
     /// `p` in metres.
+    #[inline]
     pub(super) fn metres(&self, p: Point) -> Xy {
         self.grid().local_m(p)
     }
+}
+
+/// The point at a station between two vertices.
+#[inline]
+fn between(one: Vertex, next: Vertex, station_m: f64) -> Xy {
+    let t = ((station_m - one.station_m) / (next.station_m - one.station_m)).clamp(0.0, 1.0);
+    [0, 1].map(|k| one.at[k] + t * (next.at[k] - one.at[k]))
 }
 
 /// What a line's role and rule add to its rank. Never negative.
@@ -254,12 +266,14 @@ fn standing(role: Role, rule: &Rule) -> f64 {
 }
 
 /// Distance between two positions, metres.
+#[inline]
 pub(super) fn distance(a: Xy, b: Xy) -> f64 {
     let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
     (dx * dx + dy * dy).sqrt()
 }
 
 /// Distance of `p` from the segment `a b`, and where the nearest point lies on it, in 0..1.
+#[inline]
 pub(super) fn to_segment(p: Xy, a: Xy, b: Xy) -> (f64, f64) {
     let (ux, uy) = (b[0] - a[0], b[1] - a[1]);
     let length2 = ux * ux + uy * uy;

@@ -4,6 +4,7 @@
 use smallvec::SmallVec;
 use smallvec::smallvec;
 
+use crate::cleanup::attempt::Deed;
 use crate::cleanup::changes::Reason;
 use crate::cleanup::clear::Room;
 use crate::cleanup::clear::Sweep;
@@ -31,20 +32,35 @@ impl Graph<'_> {
         if p == self.point(v) || !self.is_free(v) || !self.reaches(p) {
             return false;
         }
-        let mut drafts = self.drafts(v);
-        self.restation(&mut drafts, self.measure.metres(p));
-        if !self.all_fit(&drafts, p, share) || !self.star_is_clear(v, p, &drafts, Some(p)) {
+        let stations = self.restation_star(v, self.measure.metres(p));
+        if !self.star_fits(v, p, share) || !self.star_is_clear(v, p, &self.neighbours(v), Some(p)) {
+            self.set_stations(&stations);
             return false;
         }
-        let gone: SmallVec<[u32; 6]> = self.star[v as usize].iter().copied().collect();
-        for &edge in &gone {
-            self.remove(edge);
+        let from = self.point(v);
+        self.place(v, p);
+        self.touch(v);
+        for end in self.neighbours(v) {
+            self.touch(end);
         }
-        self.at[v as usize] = p;
-        for draft in drafts {
-            self.add_or_fuse(v, draft, None);
-        }
+        self.did(Deed::Shifted {
+            node: v,
+            from,
+            stations,
+        });
         true
+    }
+
+    /// True if all stretches at `v` fit when it is at `p`.
+    fn star_fits(&self, v: u32, p: Point, share: f64) -> bool {
+        let p = self.measure.metres(p);
+        self.star[v as usize].iter().all(|&edge| {
+            let it = &self.edges[edge as usize];
+            let [a, b] = it
+                .ends
+                .map(|end| if end == v { p } else { self.metres(end) });
+            (it.pieces.iter()).all(|piece| self.measure.fits(piece, a, b, share))
+        })
     }
 
     /// Moves node `v` onto node `w`: an edge between them is contracted, edges to the same
@@ -65,9 +81,10 @@ impl Graph<'_> {
             self.absorb(edge, v, w, &mut drafts)
         });
         self.restation(&mut drafts, self.measure.metres(p));
+        let ends: SmallVec<[u32; 6]> = drafts.iter().map(|draft| draft.to).collect();
         if !self.all_fit(&drafts, p, share)
             || !self.absorbed_fits(&absorbed, share)
-            || !self.star_is_clear(v, p, &drafts, None)
+            || !self.star_is_clear(v, p, &ends, None)
         {
             return false;
         }
@@ -103,14 +120,13 @@ impl Graph<'_> {
 
     /// Replaces an edge by two that meet in `bend`; returns the node there.
     pub(super) fn bend(&mut self, edge: u32, bend: Bend, share: f64) -> Option<u32> {
-        let edge = self.current(edge)?;
         let [a, b] = self.edges[edge as usize].ends;
         let (a_at, b_at) = (self.point(a), self.point(b));
         let (p, vacant) = match bend {
             Bend::To(node) => (self.point(node), None),
             Bend::At(p) => (p, Some(p)),
         };
-        if p == a_at || p == b_at || !self.may_bend(edge, bend) {
+        if !self.is_there(edge) || p == a_at || p == b_at || !self.may_bend(edge, bend) {
             return None;
         }
         if let Bend::To(node) = bend
@@ -243,14 +259,15 @@ impl Graph<'_> {
         })
     }
 
-    fn star_is_clear(&self, v: u32, p: Point, drafts: &[Draft], vacant: Option<Point>) -> bool {
+    /// True if `v` can go to `p` with its edges to these ends, and lose the others.
+    fn star_is_clear(&self, v: u32, p: Point, ends: &[u32], vacant: Option<Point>) -> bool {
         let q = self.point(v);
         let mut sweeps: SmallVec<[Sweep; 8]> = smallvec![Sweep {
             triangle: [q, p, p],
             fresh: smallvec![(q, p)],
         }];
-        for draft in drafts {
-            let end = self.point(draft.to);
+        for &end in ends {
+            let end = self.point(end);
             sweeps.push(Sweep {
                 triangle: [q, end, p],
                 fresh: smallvec![(p, end)],

@@ -5,6 +5,7 @@ use crate::cleanup::graph::Graph;
 use crate::cleanup::importance::is_rim_corner;
 use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;
+use crate::cleanup::nearby::Nearby;
 use crate::cleanup::separate::gap_below_m;
 use crate::cleanup::separate::is_beside;
 use crate::cleanup::steps::Step;
@@ -28,21 +29,33 @@ const STEP: f64 = 0.6;
 /// Pushes below this share of the mesh size are not made.
 const STILL: f64 = 0.005;
 
-/// Moves `nodes` one after the other, in rounds over those that are pushed.
+/// So many rounds go by before what is near is looked up again,
+const ROUNDS_A_LOOK: usize = 3;
+/// in which nodes seldom move by more than this, in mesh sizes. If one does, a push comes late.
+const DRIFT: f64 = 0.1;
+
+/// Moves `nodes`, and no others, one after the other, in rounds over those that are pushed.
 pub(super) fn relax(graph: &mut Graph, wanted: &Wanted, nodes: &[u32]) {
     if !graph.measure.does(Step::Relax) {
         return;
     }
+    let mut is_part = vec![false; graph.at.len()];
+    for &node in nodes {
+        is_part[node as usize] = graph.is_free(node);
+    }
     let mut active = nodes.to_vec();
-    let mut found = Vec::new();
     let mut around = Vec::new();
-    for _ in 0..wanted.rounds {
+    let mut nearby = Nearby::new(graph, wanted.gap + DRIFT);
+    for round in 0..wanted.rounds {
+        if round > 0 && round % ROUNDS_A_LOOK == 0 {
+            nearby = Nearby::new(graph, wanted.gap + DRIFT);
+        }
         let mut again = Vec::new();
         for &node in &active {
-            if graph.degree(node) == 0 || !graph.is_free(node) || stays(graph, wanted, node) {
+            if !is_part[node as usize] || stays(graph, wanted, node) {
                 continue;
             }
-            let push = push_m(graph, wanted, node, &mut found, &mut around);
+            let push = push_m(graph, wanted, node, &mut nearby, &mut around);
             let home = homeward_m(graph, node);
             let push = [push[0] + home[0], push[1] + home[1]];
             let push = along_rim(graph, node, push);
@@ -53,7 +66,6 @@ pub(super) fn relax(graph: &mut Graph, wanted: &Wanted, nodes: &[u32]) {
                 again.extend_from_slice(&around);
             }
         }
-        again.retain(|&node| graph.degree(node) > 0);
         again.sort_unstable();
         again.dedup();
         active = again;
@@ -66,22 +78,26 @@ const FAR: f64 = 0.2;
 /// Where the line that is farthest away pulls a node, metres.
 fn homeward_m(graph: &Graph, node: u32) -> Xy {
     let at = graph.metres(node);
-    let mut farthest = (0.0, [0.0; 2]);
+    let far = FAR * graph.size_at_m(node);
+    let (mut away, mut way) = (far, [0.0; 2]);
     for &edge in &graph.star[node as usize] {
-        for piece in &graph.edges[edge as usize].pieces {
-            let (low, high) = (piece.from_m.min(piece.to_m), piece.from_m.max(piece.to_m));
-            let station = graph.measure.nearest(piece.line, low, high, at);
+        let it = &graph.edges[edge as usize];
+        for piece in &it.pieces {
+            let (here, there) = match it.ends[0] == node {
+                true => (piece.from_m, piece.to_m),
+                false => (piece.to_m, piece.from_m),
+            };
+            // no stretch is farther away than its end
+            if distance(at, graph.measure.point(piece.line, here)) <= away {
+                continue;
+            }
+            let station = (graph.measure).nearest(piece.line, here.min(there), here.max(there), at);
             let place = graph.measure.point(piece.line, station);
-            let away = distance(at, place);
-            if away > farthest.0 {
-                farthest = (away, [place[0] - at[0], place[1] - at[1]]);
+            if distance(at, place) > away {
+                away = distance(at, place);
+                way = [place[0] - at[0], place[1] - at[1]];
             }
         }
-    }
-    let (away, way) = farthest;
-    let far = FAR * graph.size_at_m(node);
-    if away <= far {
-        return [0.0; 2];
     }
     way.map(|it| it * (1.0 - far / away))
 }
@@ -109,12 +125,12 @@ fn pushed(graph: &mut Graph, wanted: &Wanted, node: u32, push: Xy) -> bool {
 }
 
 /// Where a node is pushed by all that is too near, metres. Leaves the nodes in `around` that its
-/// edges might push, or theirs it; `found` is scratch.
+/// edges might push, or theirs it.
 fn push_m(
     graph: &Graph,
     wanted: &Wanted,
     node: u32,
-    found: &mut Vec<u32>,
+    nearby: &mut Nearby,
     around: &mut Vec<u32>,
 ) -> Xy {
     let at = graph.metres(node);
@@ -132,11 +148,8 @@ fn push_m(
         }
     }
     let size = graph.size_at_m(node);
-    let reach = wanted.gap * size / graph.measure.grid().cell_m;
-    let p = graph.point(node);
-    graph.index.near(p, p, reach, found);
     around.clear();
-    for &edge in found.iter() {
+    for &edge in nearby.edges(graph, node) {
         let wants = wanted.gap * graph.edges[edge as usize].size_m.min(size);
         if let Some(gap) = gap_below_m(graph, node, edge, wants) {
             around.extend(graph.edges[edge as usize].ends);
@@ -145,22 +158,17 @@ fn push_m(
             add(unit(between(a, b, t), at), 0.5 * (wants - gap));
         }
     }
-    let mut others: Vec<u32> = Vec::with_capacity(found.len());
     for &edge in &graph.star[node as usize] {
         let it = &graph.edges[edge as usize];
-        let [p, q] = it.ends.map(|end| graph.point(end));
-        graph.index.near(p, q, reach, found);
-        let (far, size) = (graph.metres(it.other(node)), it.size_m);
-        others.clear();
-        let ends = (found.iter()).flat_map(|&e| graph.edges[e as usize].ends);
-        others.extend(ends.filter(|&it| is_beside(graph.metres(it), at, far, wanted.gap * size)));
-        others.sort_unstable();
-        others.dedup();
-        around.extend_from_slice(&others);
-        for &other in &others {
-            let wants = wanted.gap * size.min(graph.size_at_m(other));
+        let (far, reach) = (graph.metres(it.other(node)), wanted.gap * it.size_m);
+        for &other in nearby.nodes(graph, edge) {
+            let it = graph.metres(other);
+            if !is_beside(it, at, far, reach) {
+                continue;
+            }
+            around.push(other);
+            let wants = reach.min(wanted.gap * graph.size_at_m(other));
             if let Some(gap) = gap_below_m(graph, other, edge, wants) {
-                let it = graph.metres(other);
                 let t = to_segment(it, at, far).1;
                 add(
                     unit(it, between(at, far, t)),

@@ -216,6 +216,7 @@ pub(super) fn gap_m(graph: &Graph, node: u32, edge: u32) -> Option<f64> {
 }
 
 /// [`gap_m`] if it is below the limit; what is far is told so by its bounding box.
+#[inline]
 pub(super) fn gap_below_m(graph: &Graph, node: u32, edge: u32, limit_m: f64) -> Option<f64> {
     let it = &graph.edges[edge as usize];
     let at = graph.metres(node);
@@ -243,6 +244,7 @@ pub(super) fn gap_below_m(graph: &Graph, node: u32, edge: u32, limit_m: f64) -> 
 }
 
 /// True if `p` is in the bounding box of the segment `a b`, wider by `reach` on all sides.
+#[inline]
 pub(super) fn is_beside(p: Xy, a: Xy, b: Xy, reach: f64) -> bool {
     (0..2).all(|k| a[k].min(b[k]) - reach <= p[k] && p[k] <= a[k].max(b[k]) + reach)
 }
@@ -298,16 +300,14 @@ pub(super) fn unite(
 
 /// Makes one node of two, half way between them.
 fn meet(graph: &mut Graph, keep: u32, give: u32, share: f64) -> Option<u32> {
-    let at = graph.point(keep);
-    let place = middle(at, graph.point(give));
-    if is_rim_corner(graph, keep) || !graph.shift(keep, place, share) {
+    let place = middle(graph.point(keep), graph.point(give));
+    if is_rim_corner(graph, keep) {
         return None;
     }
-    if graph.merge(give, keep, share) {
-        return Some(keep);
-    }
-    graph.shift(keep, at, f64::INFINITY);
-    None
+    graph.attempt(|graph| {
+        let is_met = graph.shift(keep, place, share) && graph.merge(give, keep, share);
+        is_met.then_some(keep)
+    })
 }
 
 fn middle(a: Point, b: Point) -> Point {
@@ -318,7 +318,9 @@ fn middle(a: Point, b: Point) -> Point {
 /// Joins a node to an edge that passes it: with the nearer end if that is near, else the node moves
 /// to its foot, or the edge bends to the node, whichever is the less important.
 pub(super) fn join(graph: &mut Graph, node: u32, edge: u32, near: f64, share: f64) -> Option<u32> {
-    let edge = graph.current(edge)?;
+    if !graph.is_there(edge) {
+        return None;
+    }
     let it = &graph.edges[edge as usize];
     let (ends, rank, size_m) = (it.ends, it.rank, it.size_m);
     let (a, b) = graph.ends_m(edge);
@@ -372,10 +374,8 @@ pub(super) fn join(graph: &mut Graph, node: u32, edge: u32, near: f64, share: f6
 /// Moves a node to `place`, and the edge too.
 fn land(graph: &mut Graph, node: u32, edge: u32, place: Xy, share: f64) -> Option<u32> {
     let p = graph.measure.on_grid(place);
-    let there = graph.bend(edge, Bend::At(p), share)?;
-    if graph.merge(node, there, share) {
-        return Some(there);
-    }
-    graph.straighten(there, f64::INFINITY, false);
-    None
+    graph.attempt(|graph| {
+        let there = graph.bend(edge, Bend::At(p), share)?;
+        graph.merge(node, there, share).then_some(there)
+    })
 }

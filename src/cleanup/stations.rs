@@ -2,6 +2,7 @@
 
 use smallvec::SmallVec;
 
+use crate::cleanup::attempt::Stations;
 use crate::cleanup::graph::Draft;
 use crate::cleanup::graph::Graph;
 use crate::cleanup::graph::Pieces;
@@ -135,20 +136,70 @@ impl Graph<'_> {
             for j in i + 1..drafts.len() {
                 let (head, tail) = drafts.split_at_mut(j);
                 for one in &mut head[i].pieces {
-                    let Some(other) = tail[0].pieces.iter_mut().find(|it| continues(it, one))
-                    else {
-                        continue;
-                    };
-                    let (low, high) = (one.to_m.min(other.to_m), one.to_m.max(other.to_m));
-                    let line = one.line;
-                    let away = 3.0 * distance(self.measure.point(line, one.from_m), p);
-                    let (from, to) = ((one.from_m - away).max(low), (one.from_m + away).min(high));
-                    let station = self.measure.nearest(line, from, to, p);
-                    one.from_m = kept_inside(station, low, high);
-                    other.from_m = one.from_m;
+                    let next = tail[0].pieces.iter_mut().find(|it| continues(it, one));
+                    if let Some(other) = next {
+                        one.from_m = self.passing_m(one, other, p);
+                        other.from_m = one.from_m;
+                    }
                 }
             }
         }
+    }
+
+    /// The same for the edges of node `v` themselves. Returns the stations as they were.
+    pub(super) fn restation_star(&mut self, v: u32, p: Xy) -> Stations {
+        let star = self.star[v as usize].clone();
+        let mut was = Stations::new();
+        for (i, &e) in star.iter().enumerate() {
+            for k in 0..self.edges[e as usize].pieces.len() {
+                let one = self.away(e, k, v);
+                let next = star[i + 1..].iter().find_map(|&f| {
+                    let all = 0..self.edges[f as usize].pieces.len();
+                    let mut all = all.map(|l| (f, l, self.away(f, l, v)));
+                    all.find(|(.., it)| continues(it, &one))
+                });
+                if let Some((f, l, other)) = next {
+                    let station_m = self.passing_m(&one, &other, p);
+                    for (edge, piece) in [(e, k), (f, l)] {
+                        let is_end = self.edges[edge as usize].ends[1] == v;
+                        was.push((edge, piece as u32, is_end, one.from_m));
+                        self.set_stations(&[(edge, piece as u32, is_end, station_m)]);
+                    }
+                }
+            }
+        }
+        was
+    }
+
+    /// A piece of an edge, away from `node`.
+    fn away(&self, edge: u32, piece: usize, node: u32) -> Piece {
+        let it = &self.edges[edge as usize];
+        if it.ends[0] == node {
+            it.pieces[piece]
+        } else {
+            turned(&it.pieces[piece])
+        }
+    }
+
+    /// The first of several for one place holds: it was there first.
+    pub(super) fn set_stations(&mut self, stations: &[(u32, u32, bool, f64)]) {
+        for &(edge, piece, is_end, station_m) in stations.iter().rev() {
+            let piece = &mut self.edges[edge as usize].pieces[piece as usize];
+            if is_end {
+                piece.to_m = station_m;
+            } else {
+                piece.from_m = station_m;
+            }
+        }
+    }
+
+    /// Where a line passes a node at `p`; its two pieces are away from there.
+    fn passing_m(&self, one: &Piece, other: &Piece, p: Xy) -> f64 {
+        let (low, high) = (one.to_m.min(other.to_m), one.to_m.max(other.to_m));
+        let line = one.line;
+        let away = 3.0 * distance(self.measure.point(line, one.from_m), p);
+        let (from, to) = ((one.from_m - away).max(low), (one.from_m + away).min(high));
+        kept_inside(self.measure.nearest(line, from, to, p), low, high)
     }
 
     /// The neighbours `a`, `b` of a node of degree two and the pieces from `a` to `b`: lines that

@@ -121,7 +121,7 @@ pub(super) fn wedges(graph: &Graph, below_deg: f64, nodes: &[u32]) -> Vec<Wedge>
 }
 
 /// The edges of a node, counter-clockwise.
-pub(super) fn sorted_star(graph: &Graph, node: u32) -> Vec<u32> {
+fn sorted_star(graph: &Graph, node: u32) -> Vec<u32> {
     let at = graph.point(node);
     let away = |edge: u32| {
         let end = graph.point(graph.edges[edge as usize].other(node));
@@ -212,33 +212,22 @@ fn part(graph: &mut Graph, zip: &Zip, hub: u32, arms: [Arm; 2], way: Xy, at_m: [
     let o = graph.metres(hub);
     let place =
         |graph: &Graph, way: Xy, at: f64| graph.measure.on_grid([0, 1].map(|k| o[k] + way[k] * at));
-    let mut added = Vec::new();
-    let ends = arms.map(|arm| {
-        let edge = graph.find(hub, arm.end).expect("an arm is an edge");
-        let p = place(graph, arm.way, at_m[1]);
-        // the rest of the arm should not be shorter than the way between the two places
-        let is_long = arm.length_m > 2.0 * at_m[1] - at_m[0];
-        let node = is_long
-            .then(|| graph.bend(edge, Bend::At(p), zip.share))
-            .flatten();
-        added.extend(node);
-        node.unwrap_or(arm.end)
-    });
-    let first = graph.find(hub, ends[0]).expect("an arm is an edge");
-    let parting = place(graph, way, at_m[0]);
-    let done = graph
-        .bend(first, Bend::At(parting), zip.share)
-        .is_some_and(|node| {
-            let second = graph.find(hub, ends[1]).expect("an arm is an edge");
-            graph.bend(second, Bend::To(node), zip.share).is_some() || {
-                graph.straighten(node, f64::INFINITY, false);
-                false
-            }
+    let parted = graph.attempt(|graph| {
+        let ends = arms.map(|arm| {
+            let edge = graph.find(hub, arm.end).expect("an arm is an edge");
+            let p = place(graph, arm.way, at_m[1]);
+            // the rest of the arm should not be shorter than the way between the two places
+            let is_long = arm.length_m > 2.0 * at_m[1] - at_m[0];
+            let node = is_long
+                .then(|| graph.bend(edge, Bend::At(p), zip.share))
+                .flatten();
+            node.unwrap_or(arm.end)
         });
-    if !done {
-        for node in added {
-            graph.straighten(node, f64::INFINITY, false);
-        }
-    }
-    done
+        let first = graph.find(hub, ends[0]).expect("an arm is an edge");
+        let parting = place(graph, way, at_m[0]);
+        let node = graph.bend(first, Bend::At(parting), zip.share)?;
+        let second = graph.find(hub, ends[1]).expect("an arm is an edge");
+        graph.bend(second, Bend::To(node), zip.share)
+    });
+    parted.is_some()
 }

@@ -23,6 +23,7 @@ impl Grid {
     }
 
     /// Metres relative to the origin.
+    #[inline]
     pub fn local_m(&self, p: Point) -> Xy {
         [f64::from(p.x) * self.cell_m, f64::from(p.y) * self.cell_m]
     }

@@ -5,6 +5,7 @@ use crate::geometry::point::Point;
 /// Twice the signed area of the triangle `a b c`: positive if `c` lies left of `a -> b`.
 ///
 /// Exact: coordinates stay within ±2^29, so each product is below 2^60.
+#[inline]
 pub fn orient(a: Point, b: Point, c: Point) -> i64 {
     let (abx, aby) = (
         i64::from(b.x) - i64::from(a.x),
@@ -18,6 +19,7 @@ pub fn orient(a: Point, b: Point, c: Point) -> i64 {
 }
 
 /// True if `p` lies on the closed segment `a b`.
+#[inline]
 pub fn on_segment(a: Point, b: Point, p: Point) -> bool {
     orient(a, b, p) == 0
         && (a.x.min(b.x)..=a.x.max(b.x)).contains(&p.x)
