@@ -12,6 +12,7 @@ use polder::pipeline::build;
 use polder::pipeline::job::CELL_M;
 use polder::pipeline::job::CORNER_DEG;
 use polder::pipeline::job::Job;
+use polder::pipeline::job::LONGEST_RUNG;
 use polder::pipeline::job::MATCH_SIDES;
 use polder::pipeline::job::SEAM_BUDGET_QUADS;
 use serde_json::Value;
@@ -125,6 +126,7 @@ fn made(folder: &Path, name: &str, city: &Value, size_m: f64, match_sides: f64) 
         cell_m: CELL_M,
         tile_m: None,
         corner_deg: CORNER_DEG,
+        longest_rung: LONGEST_RUNG,
         match_sides,
         without: Vec::new(),
         seam_budget_quads: SEAM_BUDGET_QUADS,
