@@ -27,6 +27,7 @@ use polder::pipeline::build;
 use polder::pipeline::job::CELL_M;
 use polder::pipeline::job::CORNER_DEG;
 use polder::pipeline::job::Job;
+use polder::pipeline::job::LONGEST_RUNG;
 use polder::pipeline::job::MATCH_SIDES;
 use polder::pipeline::job::SEAM_BUDGET_QUADS;
 use polder::pipeline::plan::parity_options;
@@ -110,6 +111,7 @@ fn build_case(case: &Path, size_m: f64, folder: &Path) -> PathBuf {
         cell_m: CELL_M,
         tile_m: None,
         corner_deg: CORNER_DEG,
+        longest_rung: LONGEST_RUNG,
         match_sides: MATCH_SIDES,
         previous: None,
         without: Vec::new(),

@@ -12,6 +12,7 @@ use polder::pipeline::build;
 use polder::pipeline::job::CELL_M;
 use polder::pipeline::job::CORNER_DEG;
 use polder::pipeline::job::Job;
+use polder::pipeline::job::LONGEST_RUNG;
 use polder::pipeline::job::MATCH_SIDES;
 use polder::pipeline::job::SEAM_BUDGET_QUADS;
 use serde_json::Value;
@@ -138,6 +139,7 @@ fn made(
         cell_m: CELL_M,
         tile_m: None,
         corner_deg: CORNER_DEG,
+        longest_rung: LONGEST_RUNG,
         match_sides,
         previous: previous.map(|it| it.dir().to_path_buf()),
         without: Vec::new(),

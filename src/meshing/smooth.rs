@@ -145,12 +145,15 @@ pub(crate) fn lift_worst(kernel: &mut Kernel, below: f64, size_m: f64) {
     }
 }
 
-/// So many times its hydraulic size over the wished one, a quad is worth at most: a third of the
-/// size costs no more than a solver's time step, a tenth of it is as bad as a corner of 17 degrees.
-const LARGE: f64 = 3.0;
+/// So many times its hydraulic size over the wished one, a quad is worth at most: two fifths of the
+/// size cost no more than a solver's time step, a tenth of it is as bad as a corner of 15 degrees.
+/// Smaller factors lift the least sizes at the price of the poorest shapes: against 3, these two
+/// (with the rescues of `finish`) raise the .1 % quantile of edges by a tenth and lower the 1 %
+/// quantile of shapes by up to .01.
+const LARGE: f64 = 2.6;
 
 /// The same for its shortest side that is not on the outline: those are given.
-const LONG: f64 = 3.0;
+const LONG: f64 = 2.4;
 
 /// The scaled Jacobian, less if the quad is small or has a short side.
 pub(crate) fn worth(kernel: &Kernel, quad: u32, size_m: f64) -> f64 {
