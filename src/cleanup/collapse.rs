@@ -9,6 +9,7 @@ use crate::cleanup::separate::join;
 use crate::cleanup::separate::unite;
 use crate::cleanup::steps::Step;
 use crate::cleanup::wedges::angle_deg;
+use crate::geometry::point::Point;
 use crate::geometry::predicates::by_angle;
 use crate::geometry::predicates::orient;
 
@@ -94,20 +95,22 @@ fn walk(
 ) -> Option<Face> {
     let start = (edge, side);
     let (mut edge, mut side) = start;
-    let (mut walk, mut area, mut length, mut size) = (Vec::new(), 0.0, 0.0, f64::INFINITY);
+    // exact: the walk around a free line has no area, and is no face
+    let (mut walk, mut area_cells2, mut length, mut size) =
+        (Vec::new(), 0_i128, 0.0, f64::INFINITY);
     if !graph.edges[edge as usize].inside[side] {
         return None;
     }
-    let origin = graph.metres(graph.edges[edge as usize].ends[side]);
+    let origin = graph.point(graph.edges[edge as usize].ends[side]);
     while !seen[edge as usize][side] {
         if walk.len() == WALK_MAX {
             return None;
         }
         seen[edge as usize][side] = true;
         let it = &graph.edges[edge as usize];
-        let (a, b) = (graph.metres(it.ends[side]), graph.metres(it.ends[1 - side]));
-        area += (a[0] - origin[0]) * (b[1] - origin[1]) - (b[0] - origin[0]) * (a[1] - origin[1]);
-        length += distance(a, b);
+        let (a, b) = (it.ends[side], it.ends[1 - side]);
+        area_cells2 += doubled_area(origin, graph.point(a), graph.point(b));
+        length += distance(graph.metres(a), graph.metres(b));
         size = size.min(it.size_m);
         walk.push((edge, it.ends[side]));
         let (leaves, at) = (leaving(graph, edge, it.ends[1 - side]), it.ends[1 - side]);
@@ -116,16 +119,24 @@ fn walk(
     }
     // else it came into a face that is too long
     let is_whole = (edge, side) == start;
-    if !is_whole || area <= 0.0 || !walk.iter().all(|&(edge, _)| graph.may_change(edge)) {
+    if !is_whole || area_cells2 <= 0 || !walk.iter().all(|&(edge, _)| graph.may_change(edge)) {
         return None;
     }
-    let width = area / length / size;
+    let cell_m = graph.measure.grid().cell_m;
+    let width = area_cells2 as f64 * cell_m * cell_m / length / size;
     let is_triangle = width < thin.triangle && walk.len() <= SIX && corners(graph, &walk) == 3;
     (is_triangle || width < thin.width).then_some(Face {
         width,
         is_triangle,
         walk,
     })
+}
+
+/// Twice the area of a triangle, cells².
+fn doubled_area(o: Point, a: Point, b: Point) -> i128 {
+    let away = |p: Point| [(p.x, o.x), (p.y, o.y)].map(|(u, v)| i128::from(u) - i128::from(v));
+    let ([ax, ay], [bx, by]) = (away(a), away(b));
+    ax * by - bx * ay
 }
 
 /// The edge on which the walk of a face on the left goes on, having come to `node` along `edge`:
