@@ -206,7 +206,12 @@ fn finish(graph: Graph, input: Arrangement, is_on: bool) -> Cleaned {
             let domain = graph.measure.domain;
             thread::thread(domain, graph.arrangement(), &dropped, limits_m)
         }
-        false => (input, Vec::new()),
+        false => {
+            // stretches of less than a cell, there and back, that the graph does not keep
+            dropped.clear();
+            tally.length_dropped_m = 0.0;
+            (input, Vec::new())
+        }
     };
     tally.sharp_angles = [sharp_before, sharp::sharp_angles(&arrangement, SHARP_DEG)];
     dropped.extend(torn);

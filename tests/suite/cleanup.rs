@@ -170,7 +170,8 @@ proptest! {
         let input = noded(&domain);
         let result = cleanup::clean(&domain, &SizeWish::uniform(8.0, 1), input.clone(), &off);
         prop_assert_eq!(result.arrangement, input);
-        prop_assert!(result.dropped.is_empty() && result.changes.is_empty());
+        prop_assert_eq!(&result.dropped, &Vec::new());
+        prop_assert_eq!(&result.changes, &Vec::new());
     }
 
     #[test]
