@@ -3,14 +3,8 @@
 //! Prints a row a run: lines, quads, seconds by stage, quads a second, peak memory. `--smoke` runs
 //! the smallest city alone.
 
-use polder::ingest::CrsChoice;
 use polder::pipeline::build;
-use polder::pipeline::job::CELL_M;
-use polder::pipeline::job::CORNER_DEG;
 use polder::pipeline::job::Job;
-use polder::pipeline::job::LONGEST_RUNG;
-use polder::pipeline::job::MATCH_SIDES;
-use polder::pipeline::job::SEAM_BUDGET_QUADS;
 use std::path::Path;
 use std::process::Command;
 
@@ -59,25 +53,9 @@ fn run(folder: &Path, lines: usize, size_m: f64, threads: usize) {
         .expect("the binary starts");
     assert!(made.success());
     let job = Job {
-        input,
-        output: folder.join("city.polder"),
-        size_m,
-        sizes_m: Vec::new(),
-        tolerance_m: None,
-        min_edge_m: None,
-        rules: Vec::new(),
-        crs: CrsChoice::FromFile,
-        cell_m: CELL_M,
-        tile_m: None,
-        corner_deg: CORNER_DEG,
-        longest_rung: LONGEST_RUNG,
-        match_sides: MATCH_SIDES,
-        previous: None,
-        without: Vec::new(),
-        seam_budget_quads: SEAM_BUDGET_QUADS,
         threads,
         force: true,
-        resume: false,
+        ..Job::usual(input, folder.join("city.polder"), size_m)
     };
     let outcome = build(&job, &|_| {}).expect("a city can be built");
     assert!(outcome.verdict.holds());

@@ -11,7 +11,6 @@ use highs::HighsSolutionStatus;
 use highs::RowProblem;
 use highs::Sense;
 use polder::chunk::reader::Mesh;
-use polder::ingest::CrsChoice;
 use polder::intervals::goals::Block;
 use polder::intervals::goals::Goals;
 use polder::parity;
@@ -24,12 +23,8 @@ use polder::partition::subdomains::OUTSIDE;
 use polder::partition::subdomains::Partition;
 use polder::partition::subdomains::Subdomain;
 use polder::pipeline::build;
-use polder::pipeline::job::CELL_M;
-use polder::pipeline::job::CORNER_DEG;
 use polder::pipeline::job::Job;
-use polder::pipeline::job::LONGEST_RUNG;
 use polder::pipeline::job::MATCH_SIDES;
-use polder::pipeline::job::SEAM_BUDGET_QUADS;
 use polder::pipeline::plan::parity_options;
 use spade::DelaunayTriangulation;
 use spade::Point2;
@@ -100,25 +95,8 @@ fn build_case(case: &Path, size_m: f64, folder: &Path) -> PathBuf {
     let name = name.split(".geojson").next().unwrap_or("case");
     let output = folder.join(format!("{name}.polder"));
     let job = Job {
-        input: case.to_path_buf(),
-        output: output.clone(),
-        size_m,
-        sizes_m: Vec::new(),
-        tolerance_m: None,
-        min_edge_m: None,
-        rules: Vec::new(),
-        crs: CrsChoice::FromFile,
-        cell_m: CELL_M,
-        tile_m: None,
-        corner_deg: CORNER_DEG,
-        longest_rung: LONGEST_RUNG,
-        match_sides: MATCH_SIDES,
-        previous: None,
-        without: Vec::new(),
-        seam_budget_quads: SEAM_BUDGET_QUADS,
-        threads: 0,
         force: true,
-        resume: false,
+        ..Job::usual(case.to_path_buf(), output.clone(), size_m)
     };
     build(&job, &|_| {}).expect("a case can be built");
     output

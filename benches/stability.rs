@@ -7,14 +7,9 @@
 
 use flate2::read::GzDecoder;
 use polder::chunk::reader::Mesh;
-use polder::ingest::CrsChoice;
 use polder::pipeline::build;
-use polder::pipeline::job::CELL_M;
-use polder::pipeline::job::CORNER_DEG;
 use polder::pipeline::job::Job;
-use polder::pipeline::job::LONGEST_RUNG;
 use polder::pipeline::job::MATCH_SIDES;
-use polder::pipeline::job::SEAM_BUDGET_QUADS;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::collections::BTreeSet;
@@ -128,25 +123,10 @@ fn made(
     let input = folder.join(format!("{name}.geojson"));
     std::fs::write(&input, city.to_string()).expect("room for the case");
     let job = Job {
-        input,
-        output: folder.join(format!("{name}.polder")),
-        size_m,
-        sizes_m: Vec::new(),
-        tolerance_m: None,
-        min_edge_m: None,
-        rules: Vec::new(),
-        crs: CrsChoice::FromFile,
-        cell_m: CELL_M,
-        tile_m: None,
-        corner_deg: CORNER_DEG,
-        longest_rung: LONGEST_RUNG,
         match_sides,
         previous: previous.map(|it| it.dir().to_path_buf()),
-        without: Vec::new(),
-        seam_budget_quads: SEAM_BUDGET_QUADS,
-        threads: 0,
         force: true,
-        resume: false,
+        ..Job::usual(input, folder.join(format!("{name}.polder")), size_m)
     };
     let outcome = build(&job, &|_| {}).expect("a case can be built");
     assert!(outcome.verdict.holds());

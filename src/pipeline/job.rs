@@ -73,6 +73,31 @@ pub const LONGEST_RUNG: f64 = 0.8;
 pub const MATCH_SIDES: f64 = 1.2;
 
 impl Job {
+    /// A job that says only what must be said; all else as usual.
+    pub fn usual(input: PathBuf, output: PathBuf, size_m: f64) -> Job {
+        Job {
+            input,
+            output,
+            size_m,
+            sizes_m: Vec::new(),
+            tolerance_m: None,
+            min_edge_m: None,
+            rules: Vec::new(),
+            crs: CrsChoice::FromFile,
+            cell_m: CELL_M,
+            tile_m: None,
+            corner_deg: CORNER_DEG,
+            without: Vec::new(),
+            seam_budget_quads: SEAM_BUDGET_QUADS,
+            longest_rung: LONGEST_RUNG,
+            match_sides: MATCH_SIDES,
+            previous: None,
+            threads: 0,
+            force: false,
+            resume: false,
+        }
+    }
+
     /// The tolerance where no kind says otherwise: as given, or half the size.
     pub fn tolerance(&self) -> Tolerance {
         match self.tolerance_m {

@@ -8,7 +8,6 @@ use polder::export::Format;
 use polder::export::export;
 use polder::geometry::grid::Grid;
 use polder::geometry::point::Point;
-use polder::ingest::CrsChoice;
 use polder::noding::arrangement::Arrangement;
 use polder::noding::arrangement::Piece;
 use polder::parity;
@@ -17,11 +16,7 @@ use polder::partition::subdomains::OUTSIDE;
 use polder::partition::subdomains::Partition;
 use polder::partition::subdomains::Subdomain;
 use polder::pipeline::build;
-use polder::pipeline::job::CELL_M;
-use polder::pipeline::job::CORNER_DEG;
 use polder::pipeline::job::Job;
-use polder::pipeline::job::LONGEST_RUNG;
-use polder::pipeline::job::MATCH_SIDES;
 use polder::pipeline::ordered::IN_FLIGHT_PER_WORKER;
 use polder::pipeline::ordered::in_order;
 use polder::pipeline::refusal::explain;
@@ -161,26 +156,11 @@ fn bytes_of(
     tile_m: Option<f64>,
 ) -> Vec<(String, Vec<u8>)> {
     let job = Job {
-        input: folder.join("city.geojson"),
-        output: folder.join(name),
-        size_m: 14.0,
-        sizes_m: Vec::new(),
-        tolerance_m: None,
-        min_edge_m: None,
-        rules: Vec::new(),
-        crs: CrsChoice::FromFile,
-        cell_m: CELL_M,
         tile_m,
-        corner_deg: CORNER_DEG,
-        without: Vec::new(),
         // Small, so that seams are made.
         seam_budget_quads: 1500,
-        longest_rung: LONGEST_RUNG,
-        match_sides: MATCH_SIDES,
-        previous: None,
         threads,
-        force: false,
-        resume: false,
+        ..Job::usual(folder.join("city.geojson"), folder.join(name), 14.0)
     };
     let outcome = build(&job, &|_| {}).unwrap();
     let broken: Vec<_> = outcome.verdict.broken().collect();
