@@ -9,7 +9,6 @@ use crate::cleanup::separate::join;
 use crate::cleanup::separate::unite;
 use crate::cleanup::steps::Step;
 use crate::cleanup::wedges::angle_deg;
-use crate::geometry::point::Point;
 use crate::geometry::predicates::by_angle;
 use crate::geometry::predicates::orient;
 
@@ -109,7 +108,7 @@ fn walk(
         seen[edge as usize][side] = true;
         let it = &graph.edges[edge as usize];
         let (a, b) = (it.ends[side], it.ends[1 - side]);
-        area_cells2 += doubled_area(origin, graph.point(a), graph.point(b));
+        area_cells2 += i128::from(orient(origin, graph.point(a), graph.point(b)));
         length += distance(graph.metres(a), graph.metres(b));
         size = size.min(it.size_m);
         walk.push((edge, it.ends[side]));
@@ -132,28 +131,13 @@ fn walk(
     })
 }
 
-/// Twice the area of a triangle, cells².
-fn doubled_area(o: Point, a: Point, b: Point) -> i128 {
-    let away = |p: Point| [(p.x, o.x), (p.y, o.y)].map(|(u, v)| i128::from(u) - i128::from(v));
-    let ([ax, ay], [bx, by]) = (away(a), away(b));
-    ax * by - bx * ay
-}
-
 /// The edge on which the walk of a face on the left goes on, having come to `node` along `edge`:
 /// the next one clockwise.
 pub(super) fn leaving(graph: &Graph, edge: u32, node: u32) -> u32 {
     if let [e, f] = graph.star[node as usize][..] {
         return if e == edge { f } else { e };
     }
-    let at = graph.point(node);
-    let away = |edge: u32| {
-        let end = graph.point(graph.edges[edge as usize].other(node));
-        (
-            i64::from(end.x) - i64::from(at.x),
-            i64::from(end.y) - i64::from(at.y),
-        )
-    };
-    let turn = |e: u32, f: u32| by_angle(away(e), away(f));
+    let turn = |e: u32, f: u32| by_angle(graph.heading(node, e), graph.heading(node, f));
     // the last before it, or the last of all
     let others = (graph.star[node as usize].iter().copied()).filter(|&it| it != edge);
     let next = others.max_by(|&e, &f| {

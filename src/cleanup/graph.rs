@@ -360,6 +360,18 @@ impl<'a> Graph<'a> {
         self.at[node as usize]
     }
 
+    /// From `node` along an edge to its other end, cells.
+    pub(super) fn heading(&self, node: u32, edge: u32) -> (i64, i64) {
+        let (at, end) = (
+            self.point(node),
+            self.point(self.edges[edge as usize].other(node)),
+        );
+        (
+            i64::from(end.x) - i64::from(at.x),
+            i64::from(end.y) - i64::from(at.y),
+        )
+    }
+
     #[inline]
     pub(super) fn metres(&self, node: u32) -> Xy {
         self.measure.metres(self.at[node as usize])

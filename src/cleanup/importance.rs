@@ -1,6 +1,7 @@
 //! Which of two nodes stays where it is.
 
 use crate::cleanup::graph::Graph;
+use crate::cleanup::measure::between_deg;
 use crate::geometry::point::Point;
 
 /// Compared field by field; the greater stays.
@@ -56,12 +57,6 @@ pub(super) fn turn_deg(graph: &Graph, node: u32, counts: impl Fn(u32) -> bool) -
     if picked.next().is_some() {
         return None;
     }
-    let at = graph.metres(node);
-    let away = |edge: u32| {
-        let end = graph.metres(graph.edges[edge as usize].other(node));
-        [end[0] - at[0], end[1] - at[1]]
-    };
-    let (u, v) = (away(e), away(f));
-    let (cross, dot) = (u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
-    Some(180.0 - cross.abs().atan2(dot).to_degrees())
+    let [a, b] = [e, f].map(|edge| graph.metres(graph.edges[edge as usize].other(node)));
+    Some(180.0 - between_deg(graph.metres(node), a, b))
 }

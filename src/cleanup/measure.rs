@@ -174,11 +174,9 @@ impl<'a> Measure<'a> {
             _ => return false,
         };
         let [a, o, b] = [before, k, after].map(|k| vertices[k].at);
-        let (u, v) = ([o[0] - a[0], o[1] - a[1]], [b[0] - o[0], b[1] - o[1]]);
-        let (cross, dot) = (u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
         let least_m = self.min_edge * size_m;
         distance(a, o).min(distance(o, b)) >= least_m
-            && cross.abs().atan2(dot).to_degrees() > self.corner_deg
+            && 180.0 - between_deg(o, a, b) > self.corner_deg
     }
 
     /// Largest distance between the stretch and the edge `a b`, with the stretch's ends held
@@ -263,6 +261,13 @@ fn standing(role: Role, rule: &Rule) -> f64 {
     };
     let priority = (rule.priority + PRIORITY_MAX).clamp(0, 2 * PRIORITY_MAX);
     rim + held + PRIORITY_RANK * f64::from(priority)
+}
+
+/// The angle between the directions from `o` to `a` and to `b`, degrees, up to 180.
+pub(super) fn between_deg(o: Xy, a: Xy, b: Xy) -> f64 {
+    let (u, v) = ([a[0] - o[0], a[1] - o[1]], [b[0] - o[0], b[1] - o[1]]);
+    let (cross, dot) = (u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
+    cross.abs().atan2(dot).to_degrees()
 }
 
 /// Distance between two positions, metres.

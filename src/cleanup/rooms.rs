@@ -20,6 +20,7 @@ use crate::domain::line::Domain;
 use crate::domain::size::SizeWish;
 use crate::geometry::point::Point;
 use crate::geometry::point::Xy;
+use crate::geometry::predicates::orient;
 use crate::noding::arrangement::Arrangement;
 
 /// Touching circles are a little larger than needed, so that rounding cannot lose them.
@@ -108,8 +109,9 @@ fn witnesses(faces: &Faces, radius_m: f64) -> Vec<Xy> {
 
 /// A walk around a face, the face on its left.
 struct Cycle {
-    /// Positive if it is the outer walk of its face.
-    area: f64,
+    /// Twice its area, cells²: positive if it is the outer walk of its face. Exact: the walk around a
+    /// free line has none.
+    area_cells2: i128,
     /// Its lowest node from the left.
     first: Point,
 }
@@ -153,19 +155,18 @@ impl<'g, 'm> Faces<'g, 'm> {
 
     fn walk(&mut self, start: u32) {
         let id = self.cycles.len() as u32;
-        let origin = self.graph.metres(self.ends(start)[0]);
+        let origin = self.graph.point(self.ends(start)[0]);
         let mut cycle = Cycle {
-            area: 0.0,
-            first: self.graph.point(self.ends(start)[0]),
+            area_cells2: 0,
+            first: origin,
         };
         let mut half = start;
         while self.cycle_of[half as usize] == u32::MAX {
             self.cycle_of[half as usize] = id;
             let [from, to] = self.ends(half);
-            let (a, b) = (self.graph.metres(from), self.graph.metres(to));
-            cycle.area +=
-                (a[0] - origin[0]) * (b[1] - origin[1]) - (b[0] - origin[0]) * (a[1] - origin[1]);
-            cycle.first = cycle.first.min(self.graph.point(from));
+            let (a, b) = (self.graph.point(from), self.graph.point(to));
+            cycle.area_cells2 += i128::from(orient(origin, a, b));
+            cycle.first = cycle.first.min(a);
             let next = leaving(self.graph, half >> 1, to);
             half = next << 1 | u32::from(self.graph.edges[next as usize].ends[0] != to);
         }
@@ -234,7 +235,7 @@ impl<'g, 'm> Faces<'g, 'm> {
         }
         loop {
             let cycle = &self.cycles[self.cycle_of[half as usize] as usize];
-            if cycle.area > 0.0 {
+            if cycle.area_cells2 > 0 {
                 return Some(self.cycle_of[half as usize]);
             }
             // the outside of a part that hangs on nothing: on from its leftmost node
@@ -246,10 +247,7 @@ impl<'g, 'm> Faces<'g, 'm> {
     /// Distance from `p` to the nearest edge, or `reach_m`.
     fn clearance_m(&self, p: Xy, reach_m: f64, found: &mut Vec<u32>) -> f64 {
         let cell_m = self.graph.measure.grid().cell_m;
-        let at = Point::new(
-            (p[0] / cell_m).round() as i32,
-            (p[1] / cell_m).round() as i32,
-        );
+        let at = self.graph.measure.on_grid(p);
         (self.graph.index).near(at, at, reach_m / cell_m + 1.0, found);
         let away = found.iter().map(|&edge| {
             let (a, b) = self.graph.ends_m(edge);

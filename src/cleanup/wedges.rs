@@ -2,6 +2,7 @@
 //! enough apart, and part there at a blunt angle.
 
 use crate::cleanup::graph::Graph;
+use crate::cleanup::measure::between_deg;
 use crate::cleanup::measure::distance;
 use crate::cleanup::operate::Bend;
 use crate::cleanup::separate::join;
@@ -122,25 +123,15 @@ pub(super) fn wedges(graph: &Graph, below_deg: f64, nodes: &[u32]) -> Vec<Wedge>
 
 /// The edges of a node, counter-clockwise.
 fn sorted_star(graph: &Graph, node: u32) -> Vec<u32> {
-    let at = graph.point(node);
-    let away = |edge: u32| {
-        let end = graph.point(graph.edges[edge as usize].other(node));
-        (
-            i64::from(end.x) - i64::from(at.x),
-            i64::from(end.y) - i64::from(at.y),
-        )
-    };
     let mut star = graph.star[node as usize].to_vec();
-    star.sort_by(|&e, &f| by_angle(away(e), away(f)));
+    star.sort_by(|&e, &f| by_angle(graph.heading(node, e), graph.heading(node, f)));
     star
 }
 
 /// The angle between the directions from `hub` to `a` and to `b`, degrees, up to 180.
 pub(super) fn angle_deg(graph: &Graph, hub: u32, a: u32, b: u32) -> f64 {
     let [o, a, b] = [hub, a, b].map(|node| graph.metres(node));
-    let (u, v) = ([a[0] - o[0], a[1] - o[1]], [b[0] - o[0], b[1] - o[1]]);
-    let (cross, dot) = (u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
-    cross.abs().atan2(dot).to_degrees()
+    between_deg(o, a, b)
 }
 
 fn zip_one(graph: &mut Graph, zip: &Zip, wedge: &Wedge) -> bool {

@@ -72,7 +72,6 @@ pub(super) fn built(job: &Job, outcome: &Outcome) -> Summary {
         "length_dropped_m": outcome.length_dropped_m,
         "length_small_loops_m": outcome.length_loops_m,
         "length_shrunk_m": outcome.length_shrunk_m,
-        "dropped_longest_over_size": outcome.dropped_longest_over_size,
         "sharp_angles_before": outcome.sharp_angles[0],
         "sharp_angles_after": outcome.sharp_angles[1],
         "ilp_gap": outcome.ilp_gap,

@@ -8,6 +8,7 @@
 //! sub-domain, and each is taken over as a whole if that gains its price: all is, if the cities differ.
 
 use crate::intervals::goals::Goals;
+use crate::parity::around::Around;
 use crate::parity::draft::Draft;
 use crate::parity::draft::Places;
 use crate::parity::graph::Edge;
@@ -94,21 +95,11 @@ fn change(partition: &Partition, goals: &Goals, for_gain: bool, best: &[u32], ke
 
 /// The curves whose counts differ, those around one sub-domain together; each island sorted.
 fn islands(partition: &Partition, kept: &[u32], best: &[u32]) -> Vec<Vec<u32>> {
-    let mut around: Vec<(u32, u32)> = Vec::new();
-    let differing = (0..kept.len()).filter(|&id| kept[id] != best[id]);
-    for id in differing.clone() {
-        let curve = &partition.curves[id];
-        let sides = [curve.left, curve.right].into_iter();
-        around.extend(
-            sides
-                .filter(|&side| side != OUTSIDE)
-                .map(|side| (side, id as u32)),
-        );
-    }
-    around.sort_unstable();
+    let differs = |id: usize| kept[id] != best[id];
+    let around = Around::of(partition, differs);
     let mut seen = vec![false; kept.len()];
     let mut islands = Vec::new();
-    for seed in differing {
+    for seed in (0..kept.len()).filter(|&id| differs(id)) {
         if std::mem::replace(&mut seen[seed], true) {
             continue;
         }
@@ -117,8 +108,7 @@ fn islands(partition: &Partition, kept: &[u32], best: &[u32]) -> Vec<Vec<u32>> {
             let curve = &partition.curves[island[next] as usize];
             next += 1;
             for side in [curve.left, curve.right] {
-                let from = around.partition_point(|it| it.0 < side);
-                for &(_, near) in around[from..].iter().take_while(|it| it.0 == side) {
+                for near in around.curves(side) {
                     if !std::mem::replace(&mut seen[near as usize], true) {
                         island.push(near);
                     }

@@ -124,6 +124,7 @@ use crate::parity::programme::total_units;
 use crate::parity::programme::units;
 use crate::partition::subdomains::Partition;
 
+mod around;
 pub mod balance;
 pub mod check;
 pub mod cuts;

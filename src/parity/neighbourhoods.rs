@@ -3,6 +3,7 @@
 
 use crate::intervals::goals::Goals;
 use crate::parity::Options;
+use crate::parity::around::Around;
 use crate::parity::draft::Draft;
 use crate::parity::programme::cost_units;
 use crate::parity::programme::units;
@@ -30,7 +31,8 @@ pub fn improve(
     options: &Options,
 ) -> u32 {
     let worth = units(options.worth);
-    let around = neighbours(partition);
+    let crosses = |id: usize| partition.curves[id].left != partition.curves[id].right;
+    let around = Around::of(partition, crosses);
     let mut done = vec![false; partition.subdomains.len()];
     let mut improved = 0;
     let losses = losses(goals, rules, best, multipliers, worth);
@@ -93,44 +95,19 @@ fn losses(
     losses
 }
 
-/// The curves around each sub-domain: (sub-domain, curve), sorted.
-fn neighbours(partition: &Partition) -> Vec<(u32, u32)> {
-    let mut around = Vec::new();
-    for (id, curve) in partition
-        .curves
-        .iter()
-        .enumerate()
-        .filter(|(_, it)| it.left != it.right)
-    {
-        let sides = [curve.left, curve.right].into_iter();
-        around.extend(
-            sides
-                .filter(|&side| side != OUTSIDE)
-                .map(|side| (side, id as u32)),
-        );
-    }
-    around.sort_unstable();
-    around
-}
-
-fn curves_around(around: &[(u32, u32)], subdomain: u32) -> &[(u32, u32)] {
-    let from = around.partition_point(|it| it.0 < subdomain);
-    let to = around.partition_point(|it| it.0 <= subdomain);
-    &around[from..to]
-}
-
 /// The sub-domains nearest to `centre`, in order of distance, with what lies between them.
 fn neighbourhood(
     partition: &Partition,
     goals: &Goals,
-    around: &[(u32, u32)],
+    around: &Around,
     centre: u32,
 ) -> Neighbourhood {
     let mut inside = BTreeSet::from([centre]);
     let mut subdomains = vec![centre];
     let mut next = 0;
     while next < subdomains.len() && subdomains.len() < SUBDOMAINS {
-        for &(id, curve) in curves_around(around, subdomains[next]) {
+        let id = subdomains[next];
+        for curve in around.curves(id) {
             let curve = &partition.curves[curve as usize];
             let other = if curve.left == id {
                 curve.right
@@ -145,8 +122,7 @@ fn neighbourhood(
     }
     let within = |side: u32| side == OUTSIDE || inside.contains(&side);
     let mut curves: Vec<u32> = (subdomains.iter())
-        .flat_map(|&id| curves_around(around, id))
-        .map(|&(_, curve)| curve)
+        .flat_map(|&id| around.curves(id))
         .filter(|&curve| {
             let curve = &partition.curves[curve as usize];
             within(curve.left) && within(curve.right)

@@ -34,8 +34,6 @@ pub struct Outcome {
     pub length_dropped_m: f64,
     /// Length of small loops that collapsed, metres.
     pub length_loops_m: f64,
-    /// Longest dropped stretch that is no small loop, over the wished size.
-    pub dropped_longest_over_size: f64,
     /// Length of lines that became a node, metres.
     pub length_shrunk_m: f64,
     /// Sharp angles at nodes of the line work, in the input and after clean-up.
@@ -73,9 +71,6 @@ impl Outcome {
         let budget = f64::from(job.seam_budget_quads);
         let fit = &plan.city.balance.structure;
         let dropped = &plan.city.dropped;
-        let longest = (dropped.iter())
-            .filter(|it| ![Reason::Shrunk, Reason::SmallLoop, Reason::Clipped].contains(&it.reason))
-            .map(|it| (it.to_m - it.from_m) / job.size_m);
         Outcome {
             stages,
             subdomains: plan.city.partition.subdomains.len(),
@@ -89,7 +84,6 @@ impl Outcome {
             sharp_angles: plan.city.tally.sharp_angles,
             length_shrunk_m: length_m(dropped, Reason::Shrunk),
             length_loops_m: length_m(dropped, Reason::SmallLoop),
-            dropped_longest_over_size: longest.fold(0.0, f64::max),
             ilp_gap: plan.city.balance.gap(),
             blocks: [fit.blocks, fit.mapped, fit.mapped_before],
             pattern_gap: plan.city.balance.structure_gap(),

@@ -308,39 +308,31 @@ fn cut(
         );
         Ok((made, note))
     })?;
-    let (arrangement, partition) = watch.stage("seams", 1, |_| -> Result<_, Error> {
+    let recut = |given, laid: u64, what: &str, with: Arrangement| -> Result<_, Error> {
+        if laid == 0 {
+            return Ok((given, "none needed".to_string()));
+        }
+        let parts = tiles::partition(domain, &with, tile_cells, job.corner_deg)?;
+        let note = format!("{laid} {what}, {} sub-domains", parts.subdomains.len());
+        Ok(((with, parts), note))
+    };
+    let (arrangement, partition) = watch.stage("seams", 1, |_| {
         let options = seams::Options {
             budget_quads: f64::from(job.seam_budget_quads),
         };
         let seamed = seams::cut(domain, sizes, &arrangement, &partition, &options);
         findings.extend(seamed.findings);
-        if seamed.cuts == 0 {
-            return Ok(((arrangement, partition), "none needed".to_string()));
-        }
-        let parts = tiles::partition(domain, &seamed.arrangement, tile_cells, job.corner_deg)?;
-        let note = format!(
-            "{} seam edges, {} sub-domains",
-            seamed.cuts,
-            parts.subdomains.len()
-        );
-        Ok(((seamed.arrangement, parts), note))
+        let given = (arrangement, partition);
+        recut(given, seamed.cuts, "seam edges", seamed.arrangement)
     })?;
-    watch.stage("rungs", 1, |_| -> Result<_, Error> {
+    watch.stage("rungs", 1, |_| {
         let options = rungs::Options {
             longest: job.longest_rung,
             corner_deg: job.corner_deg,
         };
         let runged = rungs::lay(domain, sizes, &arrangement, &partition, &options);
-        if runged.rungs == 0 {
-            return Ok(((arrangement, partition), "none needed".to_string()));
-        }
-        let parts = tiles::partition(domain, &runged.arrangement, tile_cells, job.corner_deg)?;
-        let note = format!(
-            "{} rungs, {} sub-domains",
-            runged.rungs,
-            parts.subdomains.len()
-        );
-        Ok(((runged.arrangement, parts), note))
+        let given = (arrangement, partition);
+        recut(given, runged.rungs, "rungs", runged.arrangement)
     })
 }
 

@@ -3,6 +3,7 @@
 use crate::chunk::reader::Mesh;
 use crate::domain::line::Domain;
 use crate::geometry::point::Xy;
+use crate::geometry::quad::distance;
 use crate::noding::arrangement::Arrangement;
 use crate::partition::subdomains::Partition;
 
@@ -19,7 +20,7 @@ impl Course {
     fn along(points_m: &[Xy]) -> Course {
         Course {
             ends_m: [points_m[0], points_m[points_m.len() - 1]],
-            length_m: points_m.windows(2).map(|it| apart_m(it[0], it[1])).sum(),
+            length_m: points_m.windows(2).map(|it| distance(it[0], it[1])).sum(),
         }
     }
 
@@ -29,14 +30,10 @@ impl Course {
             other.ends_m[usize::from(reversed)],
             other.ends_m[usize::from(!reversed)],
         ];
-        apart_m(self.ends_m[0], from)
-            .max(apart_m(self.ends_m[1], to))
+        distance(self.ends_m[0], from)
+            .max(distance(self.ends_m[1], to))
             .max((self.length_m - other.length_m).abs())
     }
-}
-
-fn apart_m(a: Xy, b: Xy) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 /// The count of each curve in `mesh`; `None` for what has no curve there.

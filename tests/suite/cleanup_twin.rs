@@ -289,7 +289,21 @@ fn a_room_that_is_lost_is_found() {
         ("boundary", square(0, 100_000)),
         ("", square(40_000, 48_000)),
     ]);
+    // the walk around it has no area: no face, and no room of its own
+    let hook = domain(&[
+        ("boundary", square(0, 100_000)),
+        (
+            "",
+            vec![
+                (50_000, 50_000),
+                (57_025, 52_173),
+                (60_274, 47_945),
+                (58_757, 42_853),
+            ],
+        ),
+    ]);
     for (work, size_m, lost) in [
+        (&hook, 10.0, 0),
         (&wall, 10.0, 1),
         (&loose, 10.0, 1),
         (&shed, 10.0, 0),

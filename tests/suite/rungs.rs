@@ -1,10 +1,11 @@
 //! Tests of `rungs`.
 
+use crate::seams::At;
+use crate::seams::SIZE_M;
+use crate::seams::domain;
 use polder::domain::line::Domain;
-use polder::domain::line::Line;
 use polder::domain::line::Role;
 use polder::domain::size::SizeWish;
-use polder::geometry::grid::Grid;
 use polder::geometry::point::Point;
 use polder::noding;
 use polder::noding::arrangement::Arrangement;
@@ -16,40 +17,10 @@ use polder::rungs::Options;
 use polder::rungs::lay;
 use proptest::prelude::*;
 
-/// Cells in a size.
-const SIZE: f64 = 1000.0;
-const SIZE_M: f64 = 10.0;
-
 const OPTIONS: Options = Options {
     longest: 0.8,
     corner_deg: 30.0,
 };
-
-/// Coordinates in sizes.
-type At = (f64, f64);
-
-fn domain(lines: &[(Role, Vec<At>)]) -> Domain {
-    let cells = |v: f64| (v * SIZE).round() as i32;
-    let line = |(source, (role, points)): (usize, &(Role, Vec<At>))| Line {
-        source: source as u32,
-        role: *role,
-        kind: 0,
-        name: String::new(),
-        points: (points.iter())
-            .map(|&(x, y)| Point::new(cells(x), cells(y)))
-            .collect(),
-    };
-    Domain {
-        grid: Grid {
-            origin_m: [1000.0, 2000.0],
-            cell_m: SIZE_M / SIZE,
-        },
-        epsg: None,
-        kinds: vec![String::new()],
-        lines: lines.iter().enumerate().map(line).collect(),
-        digest: 0,
-    }
-}
 
 fn ring(role: Role, points: &[At]) -> (Role, Vec<At>) {
     (role, points.iter().chain(&points[..1]).copied().collect())

@@ -19,7 +19,7 @@ use proptest::prelude::*;
 
 /// Edge length and lattice pitch, cells.
 const SIZE: i32 = 1000;
-const SIZE_M: f64 = 10.0;
+pub const SIZE_M: f64 = 10.0;
 
 const CORNERS_AND_TILES: partition::Options = partition::Options {
     corner_deg: 30.0,
@@ -27,9 +27,10 @@ const CORNERS_AND_TILES: partition::Options = partition::Options {
 };
 
 /// Coordinates in sizes.
-type At = (f64, f64);
+pub type At = (f64, f64);
 
-fn domain(lines: &[(Role, Vec<At>)]) -> Domain {
+/// Lines at their places.
+pub fn domain(lines: &[(Role, Vec<At>)]) -> Domain {
     let cells = |v: f64| (v * f64::from(SIZE)).round() as i32;
     let line = |(source, (role, points)): (usize, &(Role, Vec<At>))| Line {
         source: source as u32,
