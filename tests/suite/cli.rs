@@ -126,8 +126,10 @@ fn an_earlier_mesh_keeps_its_counts() {
             &[
                 "build",
                 "city.geojson",
-                // ladders of equal counts leave nothing to choose
+                // ladders of equal counts, and patterns, leave nothing to choose
                 "--longest-rung",
+                "0",
+                "--match-sides",
                 "0",
                 "--quiet",
                 "--out",
