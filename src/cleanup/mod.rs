@@ -207,7 +207,8 @@ fn finish(graph: Graph, input: Arrangement, is_on: bool) -> Cleaned {
             dropped.sort_by_key(|it| it.line);
             let limits_m = &graph.measure.tolerance_m;
             let domain = graph.measure.domain;
-            thread::thread(domain, graph.arrangement(), &dropped, limits_m)
+            let given = audit::stretches(&graph, input.pieces.iter());
+            thread::thread(domain, graph.arrangement(), &given, &dropped, limits_m)
         }
         false => {
             // stretches of less than a cell, there and back, that the graph does not keep
