@@ -218,6 +218,9 @@ fn sizes(job: &Job, domain: &Domain) -> Result<SizeWish, Error> {
     for (kind, size_m) in &job.sizes_m {
         sizes.by_kind_m[row_of_kind(domain, "sizes", kind)?] = *size_m;
     }
+    for (kind, rows) in &job.rows {
+        sizes.rows_by_kind[row_of_kind(domain, "kinds", kind)?] = *rows;
+    }
     let rim = (domain.lines.iter()).filter(|it| it.role == Role::Boundary);
     let points = || rim.clone().flat_map(|it| &it.points);
     let span = |low: Option<i32>, high: Option<i32>| {
@@ -349,6 +352,7 @@ fn balance(
             corner_deg: job.corner_deg,
             upper_ratio: 2.5,
             block_ratio: 1.25,
+            least_edge: job.min_edge(),
         };
         let goals = intervals::plan(domain, sizes, arrangement, partition, &options);
         let before = match &job.previous {
