@@ -183,15 +183,13 @@ fn is_a_node(graph: &Graph, line: LineId, from_m: f64, to_m: f64) -> bool {
     way.extend(graph.measure.vertices(&piece));
     way.push(graph.measure.point(line, to_m));
     let cell_m = graph.measure.grid().cell_m;
-    let mut found = Vec::new();
     let at = graph.measure.on_grid(way[0]);
-    (graph.index).near(at, at, limit / cell_m, &mut found);
-    (found.iter())
-        .flat_map(|&edge| graph.edges[edge as usize].ends)
-        .any(|node| {
-            let node = graph.metres(node);
+    (graph.index).any(at, at, limit / cell_m, |held| {
+        held.at().iter().any(|&node| {
+            let node = graph.measure.metres(node);
             way.iter().all(|&p| distance(p, node) <= limit)
         })
+    })
 }
 
 /// Largest and 99 % displacement by length, of every segment of every piece from its edge.
