@@ -446,6 +446,16 @@ impl<'a> Graph<'a> {
         nodes
     }
 
+    /// An edge as it stands for itself.
+    pub(super) fn loose(&self, edge: u32) -> Loose {
+        let it = &self.edges[edge as usize];
+        Loose {
+            ends: it.ends.map(|end| self.point(end)),
+            pieces: it.pieces.clone(),
+            inside: it.inside,
+        }
+    }
+
     /// Ids of the live edges.
     pub(super) fn live(&self) -> Vec<u32> {
         let all = 0..self.edges.len() as u32;
