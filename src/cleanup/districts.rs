@@ -272,7 +272,12 @@ fn graph_of<'a>(
         edges.into_iter().map(|it| (it.ends.map(id), it)).collect();
     named.sort_unstable_by_key(|it| it.0);
     let is_open: Vec<bool> = at.iter().map(|&p| is_open(p)).collect();
-    let mut graph = Graph::without_edges(measure, at, bounds);
+    let length: f64 = named
+        .iter()
+        .map(|(_, it)| it.ends[0].distance(it.ends[1]))
+        .sum();
+    let mean = length / named.len().max(1) as f64;
+    let mut graph = Graph::without_edges(measure, at, mean, bounds);
     let mut stand = vec![Stand::Settled; is_open.len()];
     for (ends, edge) in named {
         if ends.iter().any(|&end| is_open[end as usize]) {

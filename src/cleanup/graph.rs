@@ -123,7 +123,12 @@ pub(super) struct Graph<'a> {
 
 impl<'a> Graph<'a> {
     pub(super) fn new(arrangement: &Arrangement, measure: &'a Measure<'a>) -> Graph<'a> {
-        let mut graph = Graph::without_edges(measure, arrangement.points.clone(), None);
+        let lengths = arrangement.edges.iter().map(|&edge| {
+            let [a, b] = edge.map(|node| arrangement.points[node as usize]);
+            a.distance(b)
+        });
+        let mean = lengths.sum::<f64>() / arrangement.edges.len().max(1) as f64;
+        let mut graph = Graph::without_edges(measure, arrangement.points.clone(), mean, None);
         for (edge, &ends) in arrangement.edges.iter().enumerate() {
             let (pieces, inside) = as_cut(arrangement, measure.domain, edge as u32);
             graph.add(ends, pieces, inside);
@@ -131,24 +136,23 @@ impl<'a> Graph<'a> {
         graph
     }
 
-    /// The graph of these nodes, in which everything is still to be done.
+    /// The graph of these nodes, in which everything is still to be done. `length`: the mean one of
+    /// the edges that it will get, cells. The index is no finer, however small the mesh size is: so
+    /// an edge takes a few cells, and memory follows their number.
     pub(super) fn without_edges(
         measure: &'a Measure<'a>,
         at: Vec<Point>,
+        length: f64,
         bounds: Option<Window>,
     ) -> Graph<'a> {
-        let side = measure.default_m / measure.grid().cell_m;
-        let mut index = Index::new(side.max(8.0));
-        for (node, &p) in (0..).zip(&at) {
-            index.insert_node(node, p);
-        }
+        let side = length.max(measure.default_m / measure.grid().cell_m);
         Graph {
             measure,
             bounds,
             stand: vec![Stand::Open; at.len()],
             star: vec![SmallVec::new(); at.len()],
             edges: Vec::with_capacity(4 * at.len()),
-            index,
+            index: Index::new(side.max(8.0)),
             touched: Vec::new(),
             changes: Vec::new(),
             dropped: Vec::new(),

@@ -10,7 +10,8 @@ use crate::geometry::point::Point;
 /// and updates cost O(cells passed + what is there).
 pub(super) struct Index {
     edges: Cells<Held>,
-    nodes: Cells<(u32, Point)>,
+    /// Of a graph that is being changed: looking at one takes none.
+    nodes: Option<Cells<(u32, Point)>>,
 }
 
 /// What lies in each cell of a grid.
@@ -90,7 +91,7 @@ impl Index {
     pub(super) fn new(side: f64) -> Index {
         Index {
             edges: Cells::new(side),
-            nodes: Cells::new(NODE_CELL * side),
+            nodes: None,
         }
     }
 
@@ -110,16 +111,26 @@ impl Index {
         });
     }
 
+    /// Takes up all nodes, and from now on each one that is inserted.
+    pub(super) fn take_nodes(&mut self, at: &[Point]) {
+        self.nodes = Some(Cells::new(NODE_CELL * self.edges.side));
+        (0..)
+            .zip(at)
+            .for_each(|(node, &p)| self.insert_node(node, p));
+    }
+
     pub(super) fn insert_node(&mut self, node: u32, p: Point) {
-        let cell = self.nodes.cell(p);
-        self.nodes.at(cell).push((node, p));
+        if let Some(nodes) = &mut self.nodes {
+            nodes.at(nodes.cell(p)).push((node, p));
+        }
     }
 
     pub(super) fn remove_node(&mut self, node: u32, p: Point) {
-        let cell = self.nodes.cell(p);
-        let held = self.nodes.at(cell);
-        let at = held.iter().position(|it| it.0 == node);
-        held.swap_remove(at.expect("a node is in its cell"));
+        if let Some(nodes) = &mut self.nodes {
+            let held = nodes.at(nodes.cell(p));
+            let at = held.iter().position(|it| it.0 == node);
+            held.swap_remove(at.expect("a node is in its cell"));
+        }
     }
 
     /// True if one of the edges whose bounding box comes within `margin` of that of the segment
@@ -159,10 +170,11 @@ impl Index {
     }
 
     /// The nodes within `reach` of the segment `a b`, its ends included, and now and then one that
-    /// is a cell farther; sorted, each once. Nodes without edges too.
+    /// is a cell farther; sorted, each once. Nodes without edges too, if they were taken up.
     pub(super) fn nodes_near(&self, a: Point, b: Point, reach: f64, found: &mut Vec<u32>) {
         found.clear();
-        self.nodes.any(a, b, reach + 1.0, |&(node, p)| {
+        let nodes = self.nodes.as_ref().expect("nodes were taken up");
+        nodes.any(a, b, reach + 1.0, |&(node, p)| {
             if is_within(p, [a, b], reach) {
                 found.push(node);
             }

@@ -342,6 +342,7 @@ const ROUNDS_MAX: usize = 6;
 
 /// All steps, in order.
 fn make_room(graph: &mut Graph) {
+    graph.index.take_nodes(&graph.at);
     simplify::simplify(graph, &FINE, &graph.nodes());
     let least = graph.measure.min_edge;
     for pass in [&GENTLE, &FIRM, &LAST] {
