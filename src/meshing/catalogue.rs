@@ -44,8 +44,8 @@ type Polygon = SmallVec<[u8; 16]>;
 /// One quadrangulation of a loop. The nodes of the loop are numbered from 0, inner nodes on from
 /// there.
 #[derive(Clone, Debug, PartialEq)]
-struct Plan {
-    quads: Vec<[u8; 4]>,
+pub(crate) struct Plan {
+    pub quads: Vec<[u8; 4]>,
     /// Quads at each node of the loop, less one.
     around: [u8; LONGEST],
     /// What the inner nodes cost.
@@ -56,22 +56,45 @@ struct Plan {
 static PLANS: LazyLock<[Vec<Plan>; 4]> =
     LazyLock::new(|| std::array::from_fn(|k| list(2 * k + 6, MOST_INNER[k])));
 
-/// True if there is one walk, of six to twelve nodes.
+/// True if there is one walk, and it is listed.
 pub(crate) fn holds(visits: &Visits) -> bool {
-    visits.walk_start.len() == 2 && (6..=LONGEST).contains(&visits.len())
+    visits.walk_start.len() == 2 && lists(visits.len())
+}
+
+/// True if loops of so many nodes are listed.
+pub(crate) fn lists(nodes: usize) -> bool {
+    nodes.is_multiple_of(2) && (6..=LONGEST).contains(&nodes)
 }
 
 /// The `most` plans that suit the only walk best, best first.
 pub(crate) fn drafts(visits: &Visits, most: usize) -> impl Iterator<Item = Draft> {
-    let n = visits.len();
-    let cost: Vec<[f64; MOST_QUADS]> = (0..n as u32)
-        .map(|it| corner_costs(visits.angle(it)))
+    let costs: Vec<Costs> = (0..visits.len() as u32)
+        .map(|visit| corner_costs(visits.angle(visit)))
         .collect();
-    let total = |plan: &Plan| {
-        let corners = cost.iter().zip(&plan.around);
-        plan.inner_cost + corners.map(|(cost, &k)| cost[k as usize]).sum::<f64>()
+    let draft = |plan: &Plan| {
+        let mut nodes = visits.nodes.clone();
+        nodes.extend(plan.inner_nodes(&visits.nodes));
+        Draft {
+            nodes,
+            visits: visits.len(),
+            quads: plan.quads.iter().map(|quad| quad.map(u32::from)).collect(),
+            settled: 0,
+            method: Method::Mapping,
+        }
     };
-    let plans = &PLANS[n / 2 - 3];
+    best(&costs, most).into_iter().map(draft)
+}
+
+/// What 1, 2, ... quads cost at a node.
+pub(crate) type Costs = [f64; MOST_QUADS];
+
+/// The `most` plans of least cost for a loop with these costs at its nodes, cheapest first.
+pub(crate) fn best(costs: &[Costs], most: usize) -> Vec<&'static Plan> {
+    let total = |plan: &Plan| {
+        let corners = costs.iter().zip(&plan.around);
+        plan.inner_cost + corners.map(|(costs, &k)| costs[k as usize]).sum::<f64>()
+    };
+    let plans = &PLANS[costs.len() / 2 - 3];
     let mut ranked: Vec<(f64, usize)> = (plans.iter().enumerate())
         .map(|(k, plan)| (total(plan), k))
         .collect();
@@ -79,12 +102,12 @@ pub(crate) fn drafts(visits: &Visits, most: usize) -> impl Iterator<Item = Draft
     ranked.select_nth_unstable_by(most - 1, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     ranked.truncate(most);
     ranked.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    ranked.into_iter().map(|(_, k)| lay(&plans[k], visits))
+    ranked.iter().map(|&(_, k)| &plans[k]).collect()
 }
 
 /// What it costs that 1, 2, ... quads share the angle at a node: the squares of how far their
 /// corners are from right angles; a corner that must be flat or more is no corner.
-fn corner_costs(angle: f64) -> [f64; MOST_QUADS] {
+pub(crate) fn corner_costs(angle: f64) -> Costs {
     std::array::from_fn(|k| {
         let quads = (k + 1) as f64;
         let each = angle / quads;
@@ -98,23 +121,24 @@ fn inner_cost(quads: usize) -> f64 {
     quads as f64 * (TAU / quads as f64 - FRAC_PI_2).powi(2)
 }
 
-/// Inner nodes where each is about the mean of its neighbours.
-fn lay(plan: &Plan, visits: &Visits) -> Draft {
-    let mut sheet = Sheet::over(visits);
-    let n = visits.len();
-    let mark = sheet.mark();
-    let sum = visits
-        .nodes
-        .iter()
-        .fold([0.0; 2], |sum: Xy, at| [sum[0] + at[0], sum[1] + at[1]]);
-    for _ in 0..plan.inner {
-        sheet.node(sum.map(|sum| sum / n as f64));
+impl Plan {
+    /// Places of the inner nodes, each about at the mean of its neighbours.
+    pub fn inner_nodes(&self, outline: &[Xy]) -> Vec<Xy> {
+        let mut sheet = Sheet {
+            nodes: outline.to_vec(),
+            quads: Vec::new(),
+        };
+        let mark = sheet.mark();
+        let share = 1.0 / outline.len() as f64;
+        let sum = |axis: usize| outline.iter().map(|at| at[axis]).sum::<f64>();
+        let centre = [share * sum(0), share * sum(1)];
+        for _ in 0..self.inner {
+            sheet.node(centre);
+        }
+        (sheet.quads).extend(self.quads.iter().map(|quad| quad.map(u32::from)));
+        sheet.relax(mark, 12);
+        sheet.nodes.split_off(outline.len())
     }
-    sheet
-        .quads
-        .extend(plan.quads.iter().map(|quad| quad.map(u32::from)));
-    sheet.relax(mark, 12);
-    sheet.into_draft(n, Method::Mapping)
 }
 
 /// All quadrangulations of a loop of `n` nodes with up to `most_inner` inner nodes, each with three

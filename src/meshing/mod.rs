@@ -33,7 +33,7 @@
 //!   minimum-weight pairs.
 //! - `last_resort`: any [`join`] of any triangulation with rings; its page says why it cannot fail.
 //! - `cavity`: the last resort in the hole around a bad quad; such quads are counted.
-//! - `kernel`, `edits`, `improve`, `star`, `smooth`: the finish, on the part of a draft that is not
+//! - `kernel`, `edits`, `refill`, `improve`, `star`, `smooth`: the finish, on the part of a draft that is not
 //!   settled. Operations after Kinney (1997) and Canann, Muthukrishnan, Phillips (1998), each with
 //!   undo; smoothing after Garanzha and others (2021).
 //!
@@ -71,6 +71,7 @@ mod mapping;
 mod pairing;
 pub mod patch;
 mod patterns;
+mod refill;
 mod rows;
 mod scatter;
 pub mod score;
