@@ -22,6 +22,8 @@ use crate::meshing::visits::Visits;
 pub(crate) enum Effort {
     /// As it is: only the promises are checked.
     Check,
+    /// Smoothing: the connections stay.
+    Smooth,
     /// Clean-up and smoothing.
     Clean,
 }
@@ -51,6 +53,9 @@ pub(crate) fn finish(
     effort: Effort,
 ) -> Option<Patch> {
     let mut refilled = 0;
+    if effort == Effort::Smooth {
+        smooth_only(&mut draft, visits, loops.size_m);
+    }
     if effort == Effort::Clean {
         improve(&mut draft, visits, loops.size_m);
         refilled = cavity::refill(&mut draft, visits, loops.size_m);

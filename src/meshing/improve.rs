@@ -13,6 +13,7 @@ use crate::meshing::edits::valence_cost;
 use crate::meshing::kernel::Few;
 use crate::meshing::kernel::Kernel;
 use crate::meshing::kernel::quad_of;
+use crate::meshing::refill::refills;
 use crate::meshing::smooth::OPEN;
 use crate::meshing::smooth::PERFECT;
 use crate::meshing::smooth::smooth_few;
@@ -22,6 +23,10 @@ use crate::meshing::triangulate::NONE;
 
 /// A scaled Jacobian that need not get better for an operation to be kept.
 const GOOD: f64 = 0.35;
+
+/// Below this worth a quad that no operation helps has its surroundings filled again. Measured on
+/// three cities: .45 raises the 1 % quantile of shapes by .001 more, for twice the time.
+const REFILLED: f64 = 0.4;
 
 /// How the surroundings of an operation are smoothed, and how many sweeps; after each stage one
 /// looks whether it was worth it.
@@ -146,6 +151,13 @@ impl Cleaner {
                 && self.attempt(&edit, pass)
             {
                 return true;
+            }
+        }
+        if fills && worth(&self.kernel, quad, self.size_m) < REFILLED {
+            for edit in refills(&self.kernel, quad) {
+                if self.attempt(&edit, pass) {
+                    return true;
+                }
             }
         }
         // The slot may hold another quad after an undone operation; then this quad is tried again

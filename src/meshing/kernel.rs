@@ -349,7 +349,7 @@ fn partners(new: &[[u32; 4]], outline: &[(u32, u32, u32)]) -> Option<Few<Partner
 }
 
 /// The angle from `next` counter-clockwise to `previous`, seen from `at`, in (0, 2 pi].
-fn turn_rad(at: Xy, next: Xy, previous: Xy) -> f64 {
+pub(crate) fn turn_rad(at: Xy, next: Xy, previous: Xy) -> f64 {
     let toward = |p: Xy| (p[1] - at[1]).atan2(p[0] - at[0]);
     let turn = toward(previous) - toward(next);
     if turn <= 0.0 {

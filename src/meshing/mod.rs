@@ -18,10 +18,12 @@
 //!
 //! Candidates compete. `visits` makes slits ordinary boundaries; then, in the order of likely
 //! quality, each method makes a draft, `finish` cleans it up, smooths it and checks the promises,
-//! and `score` ranks it; an excellent patch ends the competition early.
+//! and `score` ranks it; an excellent patch ends the `contest` early.
 //!
 //! - `mapping`: one of the `patterns` (grid, stars of 3, 5 and 6, a 3-5 pair) over the whole of a
 //!   sub-domain with few sides.
+//! - `catalogue`: loops of up to twelve nodes that no pattern suits, by the best of all their
+//!   quadrangulations.
 //! - `looping`: `bridges` join all walks to one loop; `splitting` halves it by the best line again
 //!   and again, until a half is a pattern, or one of the `closures` of four or six nodes. After
 //!   Talbert and Parkinson (1990), Sarrate and Huerta (2000), Tarini (2021). `sheet`, `contour`: the
@@ -31,7 +33,7 @@
 //!   minimum-weight pairs.
 //! - `last_resort`: any [`join`] of any triangulation with rings; its page says why it cannot fail.
 //! - `cavity`: the last resort in the hole around a bad quad; such quads are counted.
-//! - `kernel`, `edits`, `improve`, `star`, `smooth`: the finish, on the part of a draft that is not
+//! - `kernel`, `edits`, `refill`, `improve`, `star`, `smooth`: the finish, on the part of a draft that is not
 //!   settled. Operations after Kinney (1997) and Canann, Muthukrishnan, Phillips (1998), each with
 //!   undo; smoothing after Garanzha and others (2021).
 //!
@@ -46,10 +48,12 @@
 //! sub-domain into parts is done in `seams`.
 
 mod bridges;
+mod catalogue;
 mod cavity;
 pub mod check;
 mod clearance;
 mod closures;
+mod contest;
 mod contour;
 mod core;
 mod core_quads;
@@ -67,6 +71,7 @@ mod mapping;
 mod pairing;
 pub mod patch;
 mod patterns;
+mod refill;
 mod rows;
 mod scatter;
 pub mod score;
@@ -81,6 +86,7 @@ mod visits;
 
 use crate::geometry::point::Xy;
 use crate::meshing::check::Defect;
+use crate::meshing::contest::Contest;
 use crate::meshing::draft::Draft;
 use crate::meshing::finish::Effort;
 use crate::meshing::finish::finish;
@@ -117,10 +123,6 @@ impl Options {
     }
 }
 
-/// A patch of more quads than this ends the competition: the strip made it, mostly of perfect
-/// cells, and the other methods would be slower and worse there.
-const LARGE_QUADS: usize = 2000;
-
 /// The mesh of one sub-domain and how good it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Meshed {
@@ -136,32 +138,16 @@ pub struct Meshed {
 /// touch where they should not, or have an odd number of edges).
 pub fn mesh(loops: &Loops, options: &Options) -> Result<Meshed, Defect> {
     let visits = Visits::of(loops);
-    let judge = |patch: Patch| {
-        let score = Score::of(&patch, &visits, loops);
-        (patch, score)
-    };
-    let (order, enough) = contest(&visits, loops, options);
-    let mut best: Option<(Patch, Score)> = None;
-    for method in order {
-        let finished = draft(method, &visits, loops)
-            .and_then(|draft| finish(draft, &visits, loops, Effort::Clean));
-        if let Some(rival) = finished.map(judge)
-            && best
-                .as_ref()
-                .is_none_or(|best| rival.1.rank() > best.1.rank())
-        {
-            best = Some(rival);
-        }
-        if best
-            .as_ref()
-            .is_some_and(|(patch, score)| score.rank() >= enough || patch.quads.len() > LARGE_QUADS)
-        {
-            break;
-        }
-    }
-    let (patch, score) = match best {
+    let contest = Contest::run(&visits, loops, options, |method| {
+        draft(method, &visits, loops)
+    });
+    let (patch, score) = match contest.best {
         Some(best) => best,
-        None => judge(last_resort(&visits, loops)?),
+        None => {
+            let patch = last_resort(&visits, loops)?;
+            let score = Score::of(&patch, &visits, loops);
+            (patch, score)
+        }
     };
     let corners = patch.quads[score.worst_quad as usize].map(|node| patch.nodes[node as usize]);
     let centre = |x: usize| corners.iter().map(|corner| corner[x]).sum::<f64>() / 4.0;
@@ -171,58 +157,6 @@ pub fn mesh(loops: &Loops, options: &Options) -> Result<Meshed, Defect> {
         score,
         worst_at_m,
     })
-}
-
-/// Which methods to try, in which order, and the rank that ends the contest.
-///
-/// The larger the sub-domain, the less a second draft is worth: its least Jacobian is decided by a
-/// few narrow places that every method finds equally hard, and it costs as much as the first.
-/// Measured on two cities: looping ranks above the strip below about 700 quads (.924 to .885), the
-/// same above, where the strip takes half the time and a tenth fewer quads.
-fn contest(visits: &Visits, loops: &Loops, options: &Options) -> (Vec<Method>, f64) {
-    let mut doubled = 0.0;
-    for visit in 0..visits.len() as u32 {
-        let [a, b] = [visit, visits.next(visit)].map(|visit| visits.nodes[visit as usize]);
-        let origin = visits.nodes[0];
-        doubled +=
-            (a[0] - origin[0]) * (b[1] - origin[1]) - (a[1] - origin[1]) * (b[0] - origin[0]);
-    }
-    let quads = 0.5 * doubled / (loops.size_m * loops.size_m);
-    let (order, most) = if quads > 700.0 {
-        (
-            [
-                Method::Strip,
-                Method::Looping,
-                Method::Indirect,
-                Method::Mapping,
-            ],
-            0.7,
-        )
-    } else if quads > 100.0 {
-        (
-            [
-                Method::Mapping,
-                Method::Looping,
-                Method::Strip,
-                Method::Indirect,
-            ],
-            0.85,
-        )
-    } else {
-        (
-            [
-                Method::Mapping,
-                Method::Looping,
-                Method::Indirect,
-                Method::Strip,
-            ],
-            1.0,
-        )
-    };
-    let order = order
-        .into_iter()
-        .filter(|method| options.methods.contains(method));
-    (order.collect(), options.good_enough.min(most))
 }
 
 fn draft(method: Method, visits: &Visits, loops: &Loops) -> Option<Draft> {

@@ -27,7 +27,7 @@ pub struct Loops {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 pub enum Method {
-    /// Four sides, opposite counts equal: transfinite interpolation.
+    /// One pattern over the whole: by sides and counts, or from the catalogue of small loops.
     Mapping = 0,
     /// Recursive splitting by the best line down to loops of four or six nodes.
     Looping = 1,

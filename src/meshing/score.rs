@@ -14,10 +14,13 @@ pub struct Score {
     pub least: f64,
     /// Mean scaled Jacobian.
     pub mean: f64,
-    /// Share of interior nodes that do not have four quads.
+    /// Share of nodes whose number of quads is not right: four inside, on a walk that which is
+    /// nearest to right angles. One that is nearly as near counts for the difference.
     pub irregular: f64,
     /// Least hydraulic size / wished size, at most 1: what bounds the time step of a solver.
     pub size: f64,
+    /// Quads over the number that the area asks for at the wished size, and half a quad an edge.
+    pub crowding: f64,
     /// No mesh can have a greater least scaled Jacobian: the sine of the sharpest walk corner.
     pub bound: f64,
     /// Index of the quad with the least scaled Jacobian.
@@ -32,6 +35,7 @@ impl Score {
             mean: 0.0,
             irregular: 0.0,
             size: 1.0,
+            crowding: 0.0,
             bound: bound(visits),
             worst_quad: 0,
         };
@@ -50,9 +54,9 @@ impl Score {
             }
         }
         score.mean /= patch.quads.len().max(1) as f64;
-        let inner = &valence[loops.nodes.len()..];
-        let irregular = inner.iter().filter(|&&count| count != 4).count();
-        score.irregular = irregular as f64 / inner.len().max(1) as f64;
+        score.irregular = irregular(&valence, visits, loops);
+        let wished = visits.area_m2() / (loops.size_m * loops.size_m) + 0.5 * visits.len() as f64;
+        score.crowding = patch.quads.len() as f64 / wished;
         score
     }
 
@@ -60,11 +64,37 @@ impl Score {
     ///
     /// The least Jacobian, as a share of what the sharpest corner allows, counts most while it is
     /// poor, because one bad element spoils a patch; above .6 it hardly matters, then mean shape,
-    /// regularity and the time step decide.
+    /// regularity, the time step and the number of quads decide: a wedge can be mapped with good
+    /// corners and cells of half the size, but half again as many as wished lose all of the last.
+    ///
+    /// Measured on six cities: a weight of .3 for the least and .3 for the mean lowers the least
+    /// cell of a mesh (.21 to .13 in one) for .0005 of its mean.
     pub fn rank(&self) -> f64 {
         let least = self.least / self.bound.min(0.6);
-        0.4 * least.min(1.0) + 0.35 * self.mean + 0.15 * (1.0 - self.irregular) + 0.1 * self.size
+        let room = (1.0 - 2.0 * (self.crowding - 1.0)).clamp(0.0, 1.0);
+        0.4 * least.min(1.0)
+            + 0.2 * self.mean
+            + 0.2 * (1.0 - self.irregular)
+            + 0.1 * self.size
+            + 0.1 * room
     }
+}
+
+/// See [`Score::irregular`].
+fn irregular(valence: &[u32], visits: &Visits, loops: &Loops) -> f64 {
+    let (outer, inner) = valence.split_at(loops.nodes.len());
+    let inner_irregular = inner.iter().filter(|&&count| count != 4).count() as f64;
+    let mut right = vec![0.0; outer.len()];
+    for visit in 0..visits.len() as u32 {
+        let angle = visits.angle(visit) / FRAC_PI_2;
+        right[visits.unique[visit as usize] as usize] += angle.max(1.0);
+    }
+    let beyond_need = |(&count, &right): (&u32, &f64)| {
+        let need = (right - right.round()).abs();
+        ((f64::from(count) - right).abs() - need).min(1.0)
+    };
+    let outer_irregular: f64 = outer.iter().zip(&right).map(beyond_need).sum();
+    (inner_irregular + outer_irregular) / valence.len() as f64
 }
 
 /// The sine of the sharpest walk corner, 1 if none is sharper than a right angle.

@@ -6,6 +6,7 @@
 //! become one node again when the patch is finished.
 
 use crate::geometry::point::Xy;
+use crate::geometry::quad::cross;
 use crate::meshing::patch::Loops;
 
 /// The walks of one sub-domain, a node a visit, walk after walk.
@@ -85,5 +86,15 @@ impl Visits {
         } else {
             turn
         }
+    }
+
+    /// Area of the sub-domain, m².
+    pub fn area_m2(&self) -> f64 {
+        let origin = self.nodes[0];
+        let fan = (0..self.len() as u32).map(|visit| {
+            let [a, b] = [visit, self.next(visit)].map(|visit| self.nodes[visit as usize]);
+            cross(origin, a, b)
+        });
+        0.5 * fan.sum::<f64>()
     }
 }

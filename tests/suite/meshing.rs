@@ -88,6 +88,53 @@ fn last_resort_alone_serves_everything() {
     }
 }
 
+/// Loops of six to twelve nodes, which have a catalogue.
+#[test]
+fn small_loops_are_meshed_better_than_by_looping() {
+    let random = &mut cases::Random(1);
+    let (mut gained, mut poor) = (0.0, [0, 0]);
+    for k in 0..120 {
+        let count = [6, 8, 10, 12][k % 4];
+        let ring: Vec<[f64; 2]> = (0..count)
+            .map(|k| {
+                let angle = std::f64::consts::TAU * (f64::from(k) + random.between(-0.3, 0.3))
+                    / f64::from(count);
+                let reach = f64::from(count) * random.between(1.0, 2.0);
+                [reach * angle.cos(), reach * angle.sin()]
+            })
+            .collect();
+        let mut draw = cases::Draw::default();
+        draw.ring(&ring, &|_| 1000.0);
+        let loops = draw.loops(10.0);
+        let name = format!("loop {k}");
+        let listed = verify(&name, &loops, &[Method::Mapping]);
+        let split = verify(&name, &loops, &[Method::Looping]);
+        assert_ne!(listed.patch.method, Method::LastResort, "{name}");
+        gained += listed.score.rank() - split.score.rank();
+        for (poor, meshed) in poor.iter_mut().zip([&listed, &split]) {
+            *poor += u32::from(share(meshed) < 0.5);
+        }
+    }
+    assert!(gained > 0.0, "{gained}");
+    assert!(poor[0] <= poor[1], "{poor:?}");
+}
+
+/// Where sides of a wedge are mapped to each other, cells shrink with it.
+#[test]
+fn wedges_are_not_filled_with_small_cells() {
+    let (length, angle) = (520.0, 14.0_f64.to_radians());
+    let ring = [
+        [0.0, 0.0],
+        [length, 0.0],
+        [length * angle.cos(), length * angle.sin()],
+    ];
+    let mut draw = cases::Draw::default();
+    draw.ring(&ring, &|_| 10.0);
+    let meshed = verify("wedge", &draw.loops(10.0), &ALL);
+    assert!(meshed.score.crowding < 1.2, "{:?}", meshed.score);
+    assert!(meshed.score.mean > 0.97, "{:?}", meshed.score);
+}
+
 #[test]
 fn same_loops_give_the_same_bits() {
     for seed in 0..10 {
