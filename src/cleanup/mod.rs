@@ -334,9 +334,9 @@ const STUCK: Narrow = Narrow {
     end: 0.25,
     share: 1.0,
 };
-/// What is left of acute tips when all has found its place. (Up to 60 degrees, a tenth more cells
-/// become irregular in dense places and line by line more than 1 % lies beyond a quarter of the size;
-/// with .8 of the tolerance half of the gain is gone.)
+/// What is left of acute tips when all has found its place. (Measured on five cities: up to 60
+/// degrees, the smallest cells of dense places are up to a sixth smaller; with .8 of the tolerance
+/// half of the gain is gone.)
 const BLUNT: Blunt = Blunt {
     below_deg: 45.0,
     across: 0.45,
