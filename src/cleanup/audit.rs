@@ -3,6 +3,7 @@
 use crate::cleanup::changes::Dropped;
 use crate::cleanup::changes::Reason;
 use crate::cleanup::changes::Tally;
+use crate::cleanup::graph::Edge;
 use crate::cleanup::graph::Graph;
 use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;
@@ -10,6 +11,7 @@ use crate::domain::line::LineId;
 use crate::geometry::point::Xy;
 use crate::noding::arrangement::Arrangement;
 use crate::noding::arrangement::Piece;
+use smallvec::SmallVec;
 
 /// A stretch of a line: line, from, to.
 pub(super) type Stretch = (LineId, f64, f64);
@@ -192,15 +194,21 @@ fn is_a_node(graph: &Graph, line: LineId, from_m: f64, to_m: f64) -> bool {
     })
 }
 
-/// Largest and 99 % displacement by length, of every segment of every piece from its edge.
+/// Largest and 99 % displacement by length, of every segment of every piece from the edges of its
+/// line: its own one and those before and after. Where a line turns, the stretches that belong to
+/// the one edge and to the other part at a place that is not always the nearest to both.
 fn displacements(graph: &Graph) -> Tally {
     // distance, its share of the size, length
     let mut samples: Vec<[f64; 3]> = Vec::new();
     // at vertices, which have no length
     let mut worst = [0.0_f64; 2];
     for edge in graph.edges.iter().filter(|edge| edge.alive) {
-        let [a, b] = edge.ends.map(|node| graph.metres(node));
         for piece in &edge.pieces {
+            let sides = sides_of_line(graph, edge, piece.line);
+            let away_m = |p: Xy| {
+                let all = sides.iter().map(|&(a, b)| to_segment(p, a, b).0);
+                all.fold(f64::INFINITY, f64::min)
+            };
             let size_m = graph.measure.size_m[piece.line as usize];
             let (low, high) = (piece.from_m.min(piece.to_m), piece.from_m.max(piece.to_m));
             let mut way: Vec<Xy> = vec![graph.measure.point(piece.line, low)];
@@ -213,11 +221,11 @@ fn displacements(graph: &Graph) -> Tally {
                 for k in 0..4 {
                     let t = (f64::from(k) + 0.5) / 4.0;
                     let p = [u[0] + t * (v[0] - u[0]), u[1] + t * (v[1] - u[1])];
-                    let away = to_segment(p, a, b).0;
+                    let away = away_m(p);
                     samples.push([away, away / size_m, length / 4.0]);
                 }
                 for p in [u, v] {
-                    let away = to_segment(p, a, b).0;
+                    let away = away_m(p);
                     worst = [worst[0].max(away), worst[1].max(away / size_m)];
                 }
             }
@@ -233,6 +241,17 @@ fn displacements(graph: &Graph) -> Tally {
         displacement_p99_over_size,
         ..Tally::default()
     }
+}
+
+/// An edge and the edges of the same line that it meets.
+fn sides_of_line(graph: &Graph, edge: &Edge, line: LineId) -> SmallVec<[(Xy, Xy); 4]> {
+    let stars = edge.ends.map(|node| &graph.star[node as usize]);
+    let carries = |edge: u32| {
+        let mut pieces = graph.edges[edge as usize].pieces.iter();
+        pieces.any(|piece| piece.line == line)
+    };
+    let near = stars.into_iter().flatten().filter(|&&it| carries(it));
+    near.map(|&it| graph.ends_m(it)).collect()
 }
 
 /// Largest value, at least `worst`, and 99 % quantile by length of one column of the samples. O(n):

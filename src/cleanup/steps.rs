@@ -15,17 +15,20 @@ pub enum Step {
     Collapse,
     /// Nodes and edges push each other apart.
     Relax,
+    /// Tips of strips and wedges get an edge across.
+    Blunt,
 }
 
 impl Step {
     /// All steps and their names.
-    pub const NAMED: [(&'static str, Step); 6] = [
+    pub const NAMED: [(&'static str, Step); 7] = [
         ("simplify", Step::Simplify),
         ("separate", Step::Separate),
         ("zip", Step::Zip),
         ("divide", Step::Divide),
         ("collapse", Step::Collapse),
         ("relax", Step::Relax),
+        ("blunt", Step::Blunt),
     ];
 
     /// The step of that name.

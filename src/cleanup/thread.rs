@@ -6,6 +6,8 @@
 //! tolerance of the place. Where there is no such way, the tear is reported as a dropped stretch of
 //! no length.
 
+use crate::cleanup::audit::Stretch;
+use crate::cleanup::audit::subtract;
 use crate::cleanup::changes::Dropped;
 use crate::cleanup::changes::Reason;
 use crate::domain::line::Domain;
@@ -37,11 +39,13 @@ struct Step {
     end: u32,
 }
 
-/// Threads all constraint lines of `arrangement`, but for the stretches that are `dropped`;
+/// Threads all constraint lines of `arrangement`. `given`: the stretches of lines that came into
+/// clean-up, a sorted union; `dropped`: those of them that it gave up, sorted by line;
 /// `tolerance_m` is a line's own. Returns the arrangement and the tears that are left.
 pub(super) fn thread(
     domain: &Domain,
     arrangement: Arrangement,
+    given: &[Stretch],
     dropped: &[Dropped],
     tolerance_m: &[f64],
 ) -> (Arrangement, Vec<Dropped>) {
@@ -68,13 +72,12 @@ pub(super) fn thread(
         let line = run[0].0;
         let steps: Vec<Step> = run.iter().map(|it| it.1).collect();
         let limit_m = tolerance_m[line as usize];
-        // Sorted by line.
-        let first = dropped.partition_point(|it| it.line < line);
-        let gone: Vec<(f64, f64)> = (dropped[first..].iter())
-            .take_while(|it| it.line == line)
-            .map(|it| (it.from_m, it.to_m))
-            .collect();
-        let (steps, tears) = thread_one(domain, &arrangement, &stars, line, steps, &gone, limit_m);
+        // What should be there: beyond it, the line had left the domain, or was given up.
+        let given = of_line(given, line, |it| it.0);
+        let gone = of_line(dropped, line, |it| it.line);
+        let gone: Vec<Stretch> = gone.iter().map(|it| (line, it.from_m, it.to_m)).collect();
+        let kept = subtract(given, &gone);
+        let (steps, tears) = thread_one(domain, &arrangement, &stars, line, steps, &kept, limit_m);
         threaded.extend(
             steps
                 .iter()
@@ -96,7 +99,7 @@ fn thread_one(
     stars: &Stars,
     line: LineId,
     steps: Vec<Step>,
-    dropped: &[(f64, f64)],
+    kept: &[Stretch],
     limit_m: f64,
 ) -> (Vec<Step>, Vec<(f64, f64)>) {
     let mut made: Vec<Step> = Vec::with_capacity(steps.len());
@@ -107,14 +110,13 @@ fn thread_one(
             continue;
         };
         let gap_m = (last.high_m, next.low_m.max(last.high_m));
-        let is_known =
-            || (dropped.iter()).any(|it| it.0 <= gap_m.0 + SAME_M && it.1 >= gap_m.1 - SAME_M);
+        let missing = || within(kept, gap_m);
         if last.end == next.start {
             made.push(next);
         } else if last.edge == next.edge && last.start == next.start && gap_m.1 <= gap_m.0 + SAME_M
         {
             last.high_m = last.high_m.max(next.high_m);
-        } else if gap_m.1 > gap_m.0 + SAME_M && is_known() {
+        } else if gap_m.1 > gap_m.0 + SAME_M && missing().is_empty() {
             made.push(next);
         } else {
             // All of the way represents one place: the end of the stretch before or the begin of
@@ -130,12 +132,26 @@ fn thread_one(
             });
             match led {
                 Some((way, at_m)) => lead(&mut made, &mut next, arrangement, &way, at_m),
+                None if gap_m.1 > gap_m.0 + SAME_M => tears.extend(missing()),
                 None => tears.push(gap_m),
             }
             made.push(next);
         }
     }
     (made, tears)
+}
+
+/// The rows of one line, of rows that are sorted by line.
+fn of_line<R>(rows: &[R], line: LineId, line_of: impl Fn(&R) -> LineId) -> &[R] {
+    let from = rows.partition_point(|it| line_of(it) < line);
+    let rows = &rows[from..];
+    &rows[..rows.partition_point(|it| line_of(it) == line)]
+}
+
+/// The parts of a gap that should be there.
+fn within(kept: &[Stretch], (from_m, to_m): (f64, f64)) -> Vec<(f64, f64)> {
+    let parts = kept.iter().map(|it| (it.1.max(from_m), it.2.min(to_m)));
+    parts.filter(|it| it.1 > it.0 + SAME_M).collect()
 }
 
 /// Adds the edges of `way` before `next`, each with a little of the stretch around `at_m`.

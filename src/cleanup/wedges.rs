@@ -32,12 +32,7 @@ pub(super) struct Wedge {
 
 /// Zips the wedges at `nodes`, the sharpest first.
 pub(super) fn zip_wedges(graph: &mut Graph, zip: &Zip, nodes: &[u32]) {
-    let mut wedges = wedges(graph, zip.below_deg, nodes);
-    wedges.sort_by(|u, v| {
-        (u.angle_deg.total_cmp(&v.angle_deg))
-            .then_with(|| graph.point(u.hub).cmp(&graph.point(v.hub)))
-            .then_with(|| graph.point(u.a).cmp(&graph.point(v.a)))
-    });
+    let wedges = wedges(graph, zip.below_deg, nodes);
     for wedge in wedges {
         let is_there = [wedge.a, wedge.b]
             .iter()
@@ -91,7 +86,7 @@ fn divide(graph: &mut Graph, zip: &Zip, wedge: &Wedge) {
     }
 }
 
-/// All wedges inside the domain below an angle, unsorted.
+/// All wedges inside the domain below an angle, the sharpest first.
 pub(super) fn wedges(graph: &Graph, below_deg: f64, nodes: &[u32]) -> Vec<Wedge> {
     let mut wedges = Vec::new();
     for &hub in nodes {
@@ -118,6 +113,11 @@ pub(super) fn wedges(graph: &Graph, below_deg: f64, nodes: &[u32]) -> Vec<Wedge>
             }
         }
     }
+    wedges.sort_by(|u, v| {
+        (u.angle_deg.total_cmp(&v.angle_deg))
+            .then_with(|| graph.point(u.hub).cmp(&graph.point(v.hub)))
+            .then_with(|| graph.point(u.a).cmp(&graph.point(v.a)))
+    });
     wedges
 }
 

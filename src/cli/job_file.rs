@@ -43,7 +43,11 @@ struct JobFile {
     threads: Option<usize>,
 }
 
-/// The keys of a table `[kinds.NAME]`: what clean-up may do with lines of this kind.
+/// Narrow places have no room for more rows.
+const ROWS_MAX: u32 = 4;
+
+/// The keys of a table `[kinds.NAME]`: what clean-up may do with lines of this kind, and how narrow
+/// places beside them are meshed.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct KindTable {
@@ -53,6 +57,7 @@ struct KindTable {
     small_loops: Option<LoopWord>,
     hold: Option<bool>,
     hold_m: Option<f64>,
+    rows: Option<u32>,
 }
 
 #[derive(Deserialize)]
@@ -75,6 +80,9 @@ impl KindTable {
                 "kinds.{kind}.priority is {}: it must lie in -{PRIORITY_MAX}..{PRIORITY_MAX}",
                 self.priority
             ));
+        }
+        if self.rows.is_some_and(|it| !(1..=ROWS_MAX).contains(&it)) {
+            return Err(format!("kinds.{kind}.rows: it must lie in 1..{ROWS_MAX}"));
         }
         let hold_m = match (self.hold, metres("hold_m", self.hold_m)?) {
             (Some(false), Some(_)) => {
@@ -126,6 +134,9 @@ pub fn job(args: &BuildArgs) -> Result<Job, String> {
         }
         (None, None) => CrsChoice::FromFile,
     };
+    let rows = (file.kinds.iter())
+        .filter_map(|(kind, table)| table.rows.map(|rows| (kind.clone(), rows)))
+        .collect();
     let rules = (file.kinds.into_iter())
         .map(|(kind, table)| table.rule(&kind).map(|rule| (kind, rule)))
         .collect::<Result<Vec<_>, String>>()?;
@@ -137,6 +148,7 @@ pub fn job(args: &BuildArgs) -> Result<Job, String> {
         tolerance_m: args.tolerance.or(file.tolerance),
         min_edge_m: args.min_edge.or(file.min_edge),
         rules,
+        rows,
         crs,
         cell_m: file.cell.unwrap_or(CELL_M),
         tile_m: args.tile.or(file.tile),

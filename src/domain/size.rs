@@ -1,6 +1,6 @@
 //! How large elements shall be.
 
-/// The wished edge length, by kind of line.
+/// The wished edge length and rows, by kind of line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SizeWish {
     /// Wished edge length where nothing else is said, metres.
@@ -8,6 +8,8 @@ pub struct SizeWish {
     /// Wished edge length along lines of each kind, metres; as long as
     /// [`Domain::kinds`](crate::domain::line::Domain::kinds).
     pub by_kind_m: Vec<f64>,
+    /// Rows of quads wished in narrow places beside lines of each kind, 1 or more.
+    pub rows_by_kind: Vec<u32>,
 }
 
 impl SizeWish {
@@ -16,6 +18,7 @@ impl SizeWish {
         SizeWish {
             default_m: size_m,
             by_kind_m: vec![size_m; kinds],
+            rows_by_kind: vec![1; kinds],
         }
     }
 }

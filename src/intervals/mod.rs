@@ -8,7 +8,10 @@
 //! 3. Every sub-domain's lower bounds sum to at least 4, a free line counted twice; a sub-domain
 //!    with one walk of two or three corners has at least 2 on each side, so that no corner's
 //!    element is flat (where a side is a part of one curve: on the curve as a whole).
-//! 4. Goals and bounds depend on a curve, its two sub-domains and the sizes, on nothing else.
+//! 4. Goals and bounds depend on a curve, its two sub-domains, the lines at its ends and the sizes, on
+//!    nothing else.
+//! 5. A rung beside a line whose kind wishes several rows has that many intervals at least, as far
+//!    as each is [`Options::least_edge`] long.
 //!
 //! # Needs
 //! A cleaned arrangement and its partition (`partition::check`); positive sizes.
@@ -19,9 +22,10 @@
 //! 2. `minima` over `sides`: the least counts that a shape needs, folded into the bounds of its longest curves,
 //!    so that parity stays a minimum-weight T-join and needs no rows of another kind. A fold is
 //!    sufficient, not necessary: it may forbid a split that another share of the side would allow.
-//! 3. `blocks`: the sub-domains with three to six sides, whose counts `parity` wishes to fit one
+//! 3. `rows`: what kinds of lines wish in narrow places becomes a lower bound of rungs.
+//! 4. `blocks`: the sub-domains with three to six sides, whose counts `parity` wishes to fit one
 //!    pattern, because mapped patches are the best ones. Corners as mapping chooses them.
-//! 4. Costs are those of [`Goals::cost`]: convex, relative, zero at the goal. `apportion` says what
+//! 5. Costs are those of [`Goals::cost`]: convex, relative, zero at the goal. `apportion` says what
 //!    one more interval costs on the edge of a curve that can best take it: the curve's weight.
 //!    So the odd interval that parity asks for goes to long edges, never to one below the size if
 //!    there is a way around it.
@@ -45,6 +49,7 @@ mod blocks;
 pub mod check;
 pub mod goals;
 mod minima;
+mod rows;
 mod sides;
 pub mod wish;
 
@@ -59,6 +64,8 @@ pub struct Options {
     /// A sub-domain may be a block if its wishes miss a pattern at most by this ratio of its least
     /// side (or by one interval).
     pub block_ratio: f64,
+    /// Places with several rows by wish keep each row at least this wide, sizes.
+    pub least_edge: f64,
 }
 
 /// The goals of all curves.
@@ -79,6 +86,14 @@ pub fn plan(
         push_curve(&mut goals, &wishes(curve), options);
     }
     minima::raise(&mut goals, arrangement, partition, options);
+    rows::raise(
+        &mut goals,
+        domain,
+        sizes,
+        arrangement,
+        partition,
+        options.least_edge,
+    );
     for (id, curve) in partition.curves.iter().enumerate() {
         goals.weight[id] = weight(&goals, id, &wishes(curve));
     }

@@ -79,7 +79,7 @@
 //!   programme with all odd-cut rows of all roundings, which nobody could write down.
 //! - `draft`, heuristic: each T-join's counts, mended by moves of two along rows of curves, are
 //!   candidates. Near the top the T-join obeys nearly all rules by itself, so little is to mend.
-//! - `neighbourhoods` with `solver_rules`, if asked for: at the places where the best counts exceed what
+//! - `neighbourhoods` with `solver_rules`, where the gap is still too wide: where the best counts exceed what
 //!   the bound accounts for, HiGHS solves some forty sub-domains exactly, all others held.
 //!
 //! What is proven of `counts` is [`Balance::structure_gap`].

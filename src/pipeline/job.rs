@@ -26,6 +26,8 @@ pub struct Job {
     pub min_edge_m: Option<f64>,
     /// What clean-up may do with lines of a kind.
     pub rules: Vec<(String, Rule)>,
+    /// Rows of quads in narrow places beside lines of a kind; one if not given.
+    pub rows: Vec<(String, u32)>,
     /// What the coordinates mean.
     pub crs: CrsChoice,
     /// Side of a grid cell, metres.
@@ -83,6 +85,7 @@ impl Job {
             tolerance_m: None,
             min_edge_m: None,
             rules: Vec::new(),
+            rows: Vec::new(),
             crs: CrsChoice::FromFile,
             cell_m: CELL_M,
             tile_m: None,
@@ -125,6 +128,9 @@ impl Job {
         let rules: serde_json::Map<String, serde_json::Value> = (self.rules.iter())
             .map(|(kind, rule)| (kind.clone(), echo_rule(rule)))
             .collect();
+        let rows: serde_json::Map<String, serde_json::Value> = (self.rows.iter())
+            .map(|(kind, rows)| (kind.clone(), (*rows).into()))
+            .collect();
         serde_json::json!({
             "size_m": self.size_m,
             "sizes_m": kinds,
@@ -132,6 +138,7 @@ impl Job {
             "tolerance_given": self.tolerance_m.is_some(),
             "min_edge_m": self.min_edge() * self.size_m,
             "kinds": rules,
+            "rows": rows,
             "cell_m": self.cell_m,
             "corner_deg": self.corner_deg,
             "without": self.without.iter().map(|step| step.name()).collect::<Vec<_>>(),

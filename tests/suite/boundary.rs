@@ -124,7 +124,7 @@ proptest! {
         let square = [(0, 0), (100, 0), (100, 100), (0, 100), (0, 0)];
         let (domain, arrangement, partition) = walked(&square, &lines);
         let sizes = SizeWish::uniform(size, 2);
-        let options = intervals::Options { corner_deg: 30.0, upper_ratio: 2.5, block_ratio: 1.25, };
+        let options = intervals::Options { corner_deg: 30.0, upper_ratio: 2.5, block_ratio: 1.25, least_edge: 0.25 };
         let goals = intervals::plan(&domain, &sizes, &arrangement, &partition, &options);
         let limits = parity::Options { events_max: u64::MAX, nodes_max: 100, rows_max: 1000, worth: 0.0, rounds_max: 20, climb_max: 60,
         gap_enough: 5e-4, neighbourhoods_max: 20 };

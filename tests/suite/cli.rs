@@ -126,8 +126,10 @@ fn an_earlier_mesh_keeps_its_counts() {
             &[
                 "build",
                 "city.geojson",
-                // ladders of equal counts leave nothing to choose
+                // ladders of equal counts, and patterns, leave nothing to choose
                 "--longest-rung",
+                "0",
+                "--match-sides",
                 "0",
                 "--quiet",
                 "--out",
@@ -270,6 +272,7 @@ fn rules_by_kind_are_taken_and_what_they_cannot_mean_is_refused() {
         ),
         ("tolerance_m = -1", &["kinds.river.tolerance_m", "-1"]),
         ("priority = 1000", &["kinds.river.priority", "100"]),
+        ("rows = 0", &["kinds.river.rows", "1..4"]),
         ("small_loops = \"drop\"", &["drop", "`keep`", "`collapse`"]),
         ("hold = false\nhold_m = 0.1", &["kinds.river", "hold_m"]),
         ("[kinds.canal]\nhold = true", &["kinds.canal", "river"]),

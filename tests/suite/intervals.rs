@@ -20,6 +20,7 @@ const OPTIONS: Options = Options {
     corner_deg: 30.0,
     upper_ratio: 2.5,
     block_ratio: 1.25,
+    least_edge: 0.25,
 };
 
 /// A boundary ring and lines of kind 1 (`fine`) on a grid of 1 m, noded and walked.
@@ -69,6 +70,7 @@ fn planned(ring: &[(i32, i32)], lines: &[Vec<(i32, i32)>], sizes: [f64; 2]) -> (
     let sizes = SizeWish {
         default_m: sizes[0],
         by_kind_m: sizes.to_vec(),
+        rows_by_kind: vec![1; 2],
     };
     let goals = intervals::plan(&domain, &sizes, &arrangement, &partition, &OPTIONS);
     check(&partition, &goals).unwrap();

@@ -7,6 +7,7 @@ use polder::domain::line::Domain;
 use polder::domain::line::Role;
 use polder::domain::size::SizeWish;
 use polder::geometry::point::Point;
+use polder::intervals;
 use polder::noding;
 use polder::noding::arrangement::Arrangement;
 use polder::partition;
@@ -159,6 +160,35 @@ fn junctions_get_rungs_across_a_corridor() {
     );
     let foot = Point::new(4000, 5500);
     assert!(made.arrangement.points.binary_search(&foot).is_ok());
+}
+
+/// Two rows if the kind wishes them, as far as they are not narrower than the least edge.
+#[test]
+fn rungs_have_as_many_intervals_as_rows_are_wished() {
+    let mut lines = vec![rectangle(20.0, 10.5), line(&[(0.0, 5.0), (20.0, 5.0)])];
+    lines.push(line(&[(0.0, 5.5), (20.0, 5.5)]));
+    lines.push(line(&[(9.0, 0.0), (9.0, 5.0)]));
+    let made = lay_well(&lines);
+    let domain = domain(&lines);
+    let lower = |rows: u32, least_edge: f64| {
+        let mut sizes = SizeWish::uniform(SIZE_M, 1);
+        sizes.rows_by_kind = vec![rows];
+        let options = intervals::Options {
+            corner_deg: 30.0,
+            upper_ratio: 2.5,
+            block_ratio: 1.25,
+            least_edge,
+        };
+        let goals = intervals::plan(&domain, &sizes, &made.arrangement, &made.after, &options);
+        assert_eq!(intervals::check::check(&made.after, &goals), Ok(()));
+        let mut curves = made.after.curves.iter();
+        let rung = curves.position(|it| it.is_seam && it.left != it.right);
+        goals.lower[rung.unwrap()]
+    };
+    assert_eq!(lower(1, 0.25), 1);
+    assert_eq!(lower(2, 0.25), 2);
+    assert_eq!(lower(3, 0.25), 2);
+    assert_eq!(lower(2, 0.3), 1);
 }
 
 /// Junctions that nearly face each other share a rung.
