@@ -49,7 +49,8 @@ impl Graph<'_> {
     fn take_back(&mut self, deed: Deed) {
         match deed {
             Deed::AddedNode => {
-                self.at.pop();
+                let p = self.at.pop().expect("a node was added");
+                self.index.remove_node(self.at.len() as u32, p);
                 self.stand.pop();
                 self.star.pop();
             }

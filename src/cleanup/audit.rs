@@ -185,15 +185,13 @@ fn is_a_node(graph: &Graph, line: LineId, from_m: f64, to_m: f64) -> bool {
     way.extend(graph.measure.vertices(&piece));
     way.push(graph.measure.point(line, to_m));
     let cell_m = graph.measure.grid().cell_m;
-    let mut found = Vec::new();
     let at = graph.measure.on_grid(way[0]);
-    (graph.index).near(at, at, limit / cell_m, &mut found);
-    (found.iter())
-        .flat_map(|&edge| graph.edges[edge as usize].ends)
-        .any(|node| {
-            let node = graph.metres(node);
+    (graph.index).any(at, at, limit / cell_m, |held| {
+        held.at().iter().any(|&node| {
+            let node = graph.measure.metres(node);
             way.iter().all(|&p| distance(p, node) <= limit)
         })
+    })
 }
 
 /// Largest and 99 % displacement by length, of every segment of every piece from the edges of its
@@ -256,17 +254,28 @@ fn sides_of_line(graph: &Graph, edge: &Edge, line: LineId) -> SmallVec<[(Xy, Xy)
     near.map(|&it| graph.ends_m(it)).collect()
 }
 
-/// Largest value, at least `worst`, and 99 % quantile by length of one column of the samples.
+/// Largest value, at least `worst`, and 99 % quantile by length of one column of the samples. O(n):
+/// what lies on the wrong side of the middle is never sorted.
 fn extremes(samples: &mut [[f64; 3]], column: usize, worst: f64) -> [f64; 2] {
-    samples.sort_unstable_by(|a, b| a[column].total_cmp(&b[column]).then(a[2].total_cmp(&b[2])));
-    let total: f64 = samples.iter().map(|it| it[2]).sum();
-    let mut below = 0.0;
-    let p99 = samples.iter().find(|it| {
-        below += it[2];
-        below >= 0.99 * total
-    });
-    let [last, p99] = [samples.last(), p99].map(|it| it.map_or(0.0, |it| it[column]));
-    [last.max(worst), p99]
+    let length = |samples: &[[f64; 3]]| samples.iter().map(|it| it[2]).sum::<f64>();
+    let largest = samples.iter().map(|it| it[column]).fold(worst, f64::max);
+    let mut rest_m = 0.99 * length(samples);
+    let mut rest = samples;
+    while rest.len() > 1 {
+        let middle = rest.len() / 2;
+        rest.select_nth_unstable_by(middle, |a, b| {
+            a[column].total_cmp(&b[column]).then(a[2].total_cmp(&b[2]))
+        });
+        let (low, high) = rest.split_at_mut(middle);
+        let low_m = length(low);
+        if low_m >= rest_m {
+            rest = low;
+        } else {
+            rest_m -= low_m;
+            rest = high;
+        }
+    }
+    [largest, rest.first().map_or(0.0, |it| it[column])]
 }
 
 fn rows(graph: &Graph) -> Vec<(&'static str, u64, f64)> {

@@ -33,15 +33,15 @@ impl Graph<'_> {
     /// This keeps the graph planar, and in the same order around each node: an edge that does not
     /// cross the old segment, nor the new one, nor has an end in between, is not passed.
     pub(super) fn is_clear(&self, sweeps: &[Sweep], room: &Room) -> bool {
-        let mut found = Vec::with_capacity(32);
         sweeps.iter().all(|sweep| {
             let [a, b, c] = sweep.triangle;
-            self.index.near(a, b, height(a, b, c), &mut found);
-            found.iter().all(|&edge| {
-                let ends = self.edges[edge as usize].ends.map(|node| self.point(node));
-                ends.iter().all(|&end| room.allows(sweep.triangle, end))
-                    && (room.gone.contains(&edge)
-                        || (sweep.fresh.iter()).all(|&(u, v)| !touches(u, v, ends[0], ends[1])))
+            !self.index.any(a, b, height(a, b, c), |held| {
+                let [p, q] = held.at();
+                let is_allowed = room.allows(sweep.triangle, p)
+                    && room.allows(sweep.triangle, q)
+                    && (room.gone.contains(&held.edge)
+                        || (sweep.fresh.iter()).all(|&(u, v)| !touches(u, v, p, q)));
+                !is_allowed
             })
         })
     }

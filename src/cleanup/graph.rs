@@ -6,6 +6,7 @@ use crate::cleanup::attempt::Deed;
 use crate::cleanup::changes::Change;
 use crate::cleanup::changes::Dropped;
 use crate::cleanup::changes::Reason;
+use crate::cleanup::index::Held;
 use crate::cleanup::index::Index;
 use crate::cleanup::measure::Measure;
 use crate::domain::line::Domain;
@@ -122,7 +123,12 @@ pub(super) struct Graph<'a> {
 
 impl<'a> Graph<'a> {
     pub(super) fn new(arrangement: &Arrangement, measure: &'a Measure<'a>) -> Graph<'a> {
-        let mut graph = Graph::without_edges(measure, arrangement.points.clone(), None);
+        let lengths = arrangement.edges.iter().map(|&edge| {
+            let [a, b] = edge.map(|node| arrangement.points[node as usize]);
+            a.distance(b)
+        });
+        let mean = lengths.sum::<f64>() / arrangement.edges.len().max(1) as f64;
+        let mut graph = Graph::without_edges(measure, arrangement.points.clone(), mean, None);
         for (edge, &ends) in arrangement.edges.iter().enumerate() {
             let (pieces, inside) = as_cut(arrangement, measure.domain, edge as u32);
             graph.add(ends, pieces, inside);
@@ -130,20 +136,23 @@ impl<'a> Graph<'a> {
         graph
     }
 
-    /// The graph of these nodes, in which everything is still to be done.
+    /// The graph of these nodes, in which everything is still to be done. `length`: the mean one of
+    /// the edges that it will get, cells. The index is no finer, however small the mesh size is: so
+    /// an edge takes a few cells, and memory follows their number.
     pub(super) fn without_edges(
         measure: &'a Measure<'a>,
         at: Vec<Point>,
+        length: f64,
         bounds: Option<Window>,
     ) -> Graph<'a> {
-        let side = measure.default_m / measure.grid().cell_m;
+        let side = length.max(measure.default_m / measure.grid().cell_m);
         Graph {
             measure,
             bounds,
             stand: vec![Stand::Open; at.len()],
             star: vec![SmallVec::new(); at.len()],
             edges: Vec::with_capacity(4 * at.len()),
-            index: Index::new(side.max(4.0)),
+            index: Index::new(side.max(8.0)),
             touched: Vec::new(),
             changes: Vec::new(),
             dropped: Vec::new(),
@@ -177,8 +186,14 @@ impl<'a> Graph<'a> {
         for node in ends {
             self.star[node as usize].push(edge);
         }
-        let [a, b] = ends.map(|node| self.point(node));
-        self.index.insert(edge, a, b);
+        self.hold(edge);
+    }
+
+    /// Makes the edge known to the index.
+    fn hold(&mut self, edge: u32) {
+        let ends = self.edges[edge as usize].ends;
+        let at = ends.map(|node| self.point(node));
+        self.index.insert(Held::new(edge, ends, at));
     }
 
     /// Makes its ends and the index forget the edge.
@@ -194,10 +209,13 @@ impl<'a> Graph<'a> {
     /// Puts a node to another place, with its edges.
     pub(super) fn place(&mut self, node: u32, to: Point) {
         let from = std::mem::replace(&mut self.at[node as usize], to);
-        for &edge in &self.star[node as usize] {
-            let end = self.at[self.edges[edge as usize].other(node) as usize];
+        self.index.remove_node(node, from);
+        self.index.insert_node(node, to);
+        for k in 0..self.star[node as usize].len() {
+            let edge = self.star[node as usize][k];
+            let end = self.point(self.edges[edge as usize].other(node));
             self.index.remove(edge, from, end);
-            self.index.insert(edge, to, end);
+            self.hold(edge);
         }
     }
 
@@ -212,11 +230,13 @@ impl<'a> Graph<'a> {
 
     /// A new node without edges.
     pub(super) fn add_node(&mut self, p: Point) -> u32 {
+        let node = self.at.len() as u32;
+        self.index.insert_node(node, p);
         self.at.push(p);
         self.stand.push(Stand::Open);
         self.star.push(SmallVec::new());
         self.did(Deed::AddedNode);
-        self.at.len() as u32 - 1
+        node
     }
 
     pub(super) fn set_stand(&mut self, node: u32, stand: Stand) {
@@ -428,6 +448,16 @@ impl<'a> Graph<'a> {
         nodes.dedup();
         nodes.retain(|&node| self.degree(node) > 0);
         nodes
+    }
+
+    /// An edge as it stands for itself.
+    pub(super) fn loose(&self, edge: u32) -> Loose {
+        let it = &self.edges[edge as usize];
+        Loose {
+            ends: it.ends.map(|end| self.point(end)),
+            pieces: it.pieces.clone(),
+            inside: it.inside,
+        }
     }
 
     /// Ids of the live edges.

@@ -1,95 +1,197 @@
-//! A hash grid over segments: which edges come near a segment.
+//! Hash grids over segments and points: which edges and nodes come near a segment.
 
 use rustc_hash::FxHashMap;
 
+use crate::cleanup::measure::to_segment;
 use crate::geometry::point::Point;
 
-/// Edges by the square cells of side `side` that they pass. A segment occupies every cell that it
-/// touches (and now and then one beside it), so a query misses nothing. Queries and updates cost
-/// O(cells passed + edges there).
+/// Edges by the square cells that they pass, nodes by the cell that they lie in. A segment occupies
+/// every cell that it touches (and now and then one beside it), so a query misses nothing. Queries
+/// and updates cost O(cells passed + what is there).
 pub(super) struct Index {
+    edges: Cells<Held>,
+    /// Of a graph that is being changed: looking at one takes none.
+    nodes: Option<Cells<(u32, Point)>>,
+}
+
+/// What lies in each cell of a grid.
+struct Cells<T> {
     side: f64,
     /// Cells by blocks: most queries stay inside one, and hash once.
-    blocks: FxHashMap<(i32, i32), Block>,
+    blocks: FxHashMap<(i32, i32), Block<T>>,
 }
 
 /// Cells a side of a block, as a power of two.
 const BLOCK: u32 = 2;
 
 /// The cells of a block, row by row.
-type Block = [Vec<Held>; 1 << (2 * BLOCK)];
+type Block<T> = [Vec<T>; 1 << (2 * BLOCK)];
 
-/// An edge with its bounding box, so that a query need not look it up.
+/// Cells of nodes are smaller: a node lies in one, however small it is, an edge in many.
+const NODE_CELL: f64 = 0.5;
+
+impl<T> Cells<T> {
+    fn new(side: f64) -> Cells<T> {
+        let blocks = FxHashMap::default();
+        Cells { side, blocks }
+    }
+
+    /// The cell that `p` lies in.
+    fn cell(&self, p: Point) -> (i32, i32) {
+        let per_side = 1.0 / self.side;
+        [p.x, p.y].map(|v| floor(f64::from(v) * per_side)).into()
+    }
+
+    fn at(&mut self, cell: (i32, i32)) -> &mut Vec<T> {
+        &mut self.blocks.entry(block(cell)).or_default()[within(cell)]
+    }
+
+    /// True if something that is held in a cell within `margin` of the segment is what is looked
+    /// for.
+    #[inline]
+    fn any(&self, a: Point, b: Point, margin: f64, mut is: impl FnMut(&T) -> bool) -> bool {
+        let mut last: (Option<(i32, i32)>, Option<&Block<T>>) = (None, None);
+        passed(self.side, a, b, margin, |cell| {
+            if last.0 != Some(block(cell)) {
+                last = (Some(block(cell)), self.blocks.get(&block(cell)));
+            }
+            last.1
+                .is_some_and(|block| block[within(cell)].iter().any(&mut is))
+        })
+    }
+}
+
+/// An edge, its ends and where they are, so that a query need not look them up.
 #[derive(Clone, Copy)]
-struct Held {
-    edge: u32,
-    min: Point,
-    max: Point,
+pub(super) struct Held {
+    pub(super) edge: u32,
+    pub(super) ends: [u32; 2],
+    /// The first is not right of the second.
+    at: [Point; 2],
+}
+
+impl Held {
+    pub(super) fn new(edge: u32, [a, b]: [u32; 2], [p, q]: [Point; 2]) -> Held {
+        let (ends, at) = match p.x <= q.x {
+            true => ([a, b], [p, q]),
+            false => ([b, a], [q, p]),
+        };
+        Held { edge, ends, at }
+    }
+
+    /// Where its ends are.
+    #[inline]
+    pub(super) fn at(&self) -> [Point; 2] {
+        self.at
+    }
 }
 
 impl Index {
-    /// An empty index with cells of `side` grid units.
+    /// An empty index for edges of about `side` grid units.
     pub(super) fn new(side: f64) -> Index {
         Index {
-            side,
-            blocks: FxHashMap::default(),
+            edges: Cells::new(side),
+            nodes: None,
         }
     }
 
-    pub(super) fn insert(&mut self, edge: u32, a: Point, b: Point) {
-        let blocks = &mut self.blocks;
-        let (min, max) = bounding_box(a, b);
-        passed(self.side, a, b, 0.0, |cell| {
-            let held = Held { edge, min, max };
-            blocks.entry(block(cell)).or_default()[within(cell)].push(held);
+    pub(super) fn insert(&mut self, held: Held) {
+        passed(self.edges.side, held.at[0], held.at[1], 0.0, |cell| {
+            self.edges.at(cell).push(held);
+            false
         });
     }
 
     pub(super) fn remove(&mut self, edge: u32, a: Point, b: Point) {
-        let blocks = &mut self.blocks;
-        passed(self.side, a, b, 0.0, |cell| {
-            let held = blocks.get_mut(&block(cell));
-            let held = &mut held.expect("a removed edge was inserted")[within(cell)];
+        passed(self.edges.side, a, b, 0.0, |cell| {
+            let held = self.edges.at(cell);
             let at = held.iter().position(|it| it.edge == edge);
             held.swap_remove(at.expect("an edge occupies all its cells"));
+            false
         });
     }
 
-    /// All edges whose bounding box comes within `margin` of that of the segment `a b` and that
-    /// share a cell with what is within `margin` of it; sorted, each once.
-    pub(super) fn near(&self, a: Point, b: Point, margin: f64, found: &mut Vec<u32>) {
-        found.clear();
-        let (min, max) = bounding_box(a, b);
+    /// Takes up all nodes, and from now on each one that is inserted.
+    pub(super) fn take_nodes(&mut self, at: &[Point]) {
+        self.nodes = Some(Cells::new(NODE_CELL * self.edges.side));
+        (0..)
+            .zip(at)
+            .for_each(|(node, &p)| self.insert_node(node, p));
+    }
+
+    pub(super) fn insert_node(&mut self, node: u32, p: Point) {
+        if let Some(nodes) = &mut self.nodes {
+            nodes.at(nodes.cell(p)).push((node, p));
+        }
+    }
+
+    pub(super) fn remove_node(&mut self, node: u32, p: Point) {
+        if let Some(nodes) = &mut self.nodes {
+            let held = nodes.at(nodes.cell(p));
+            let at = held.iter().position(|it| it.0 == node);
+            held.swap_remove(at.expect("a node is in its cell"));
+        }
+    }
+
+    /// True if one of the edges whose bounding box comes within `margin` of that of the segment
+    /// `a b`, and that share a cell with what is within `margin` of it, is what is looked for. In
+    /// no order that means anything, and some are asked twice.
+    pub(super) fn any(
+        &self,
+        a: Point,
+        b: Point,
+        margin: f64,
+        mut is: impl FnMut(&Held) -> bool,
+    ) -> bool {
         let reach = margin.ceil() as i32 + 1;
-        let (left, right) = (min.x.saturating_sub(reach), max.x.saturating_add(reach));
-        let (bottom, top) = (min.y.saturating_sub(reach), max.y.saturating_add(reach));
-        let mut last: (Option<(i32, i32)>, Option<&Block>) = (None, None);
-        passed(self.side, a, b, margin + 1.0, |cell| {
-            if last.0 != Some(block(cell)) {
-                last = (Some(block(cell)), self.blocks.get(&block(cell)));
+        let (left, right) = (a.x.min(b.x) - reach, a.x.max(b.x) + reach);
+        let (bottom, top) = (a.y.min(b.y) - reach, a.y.max(b.y) + reach);
+        self.edges.any(a, b, margin + 1.0, |it| {
+            let [p, q] = it.at;
+            // one branch for all four: it is taken by few
+            let is_aside =
+                (q.x < left) | (p.x > right) | (p.y.max(q.y) < bottom) | (p.y.min(q.y) > top);
+            !is_aside && is(it)
+        })
+    }
+
+    /// The edges within `reach` of a point, and now and then one that is a cell farther; sorted,
+    /// each once.
+    pub(super) fn edges_near(&self, p: Point, reach: f64, found: &mut Vec<u32>) {
+        found.clear();
+        self.any(p, p, reach, |held| {
+            if is_within(p, held.at, reach) {
+                found.push(held.edge);
             }
-            let Some(block) = last.1 else {
-                return;
-            };
-            for it in &block[within(cell)] {
-                // one branch for all four: it is taken by few
-                let is_aside =
-                    (it.max.x < left) | (it.min.x > right) | (it.max.y < bottom) | (it.min.y > top);
-                if !is_aside {
-                    found.push(it.edge);
-                }
-            }
+            false
         });
         found.sort_unstable();
         found.dedup();
     }
+
+    /// The nodes within `reach` of the segment `a b`, its ends included, and now and then one that
+    /// is a cell farther; sorted, each once. Nodes without edges too, if they were taken up.
+    pub(super) fn nodes_near(&self, a: Point, b: Point, reach: f64, found: &mut Vec<u32>) {
+        found.clear();
+        let nodes = self.nodes.as_ref().expect("nodes were taken up");
+        nodes.any(a, b, reach + 1.0, |&(node, p)| {
+            if is_within(p, [a, b], reach) {
+                found.push(node);
+            }
+            false
+        });
+        found.sort_unstable();
+    }
 }
 
-fn bounding_box(a: Point, b: Point) -> (Point, Point) {
-    (
-        Point::new(a.x.min(b.x), a.y.min(b.y)),
-        Point::new(a.x.max(b.x), a.y.max(b.y)),
-    )
+/// True if `p` is within `reach`, and a cell for rounding, of the segment `a b`.
+#[inline]
+fn is_within(p: Point, [a, b]: [Point; 2], reach: f64) -> bool {
+    let [p, a, b] = [p, a, b].map(|it| [f64::from(it.x), f64::from(it.y)]);
+    let limit = reach + 1.0;
+    // most are beside the bounding box
+    let is_beside = |k: usize| (a[k].min(b[k]) - limit <= p[k]) & (p[k] <= a[k].max(b[k]) + limit);
+    (is_beside(0) & is_beside(1)) && to_segment(p, a, b).0 <= limit
 }
 
 fn block((column, row): (i32, i32)) -> (i32, i32) {
@@ -107,9 +209,15 @@ fn floor(v: f64) -> i32 {
     cut - i32::from(f64::from(cut) > v)
 }
 
-/// Calls `visit` for every cell within `margin` of the segment: column by column, the rows that
-/// the segment passes inside the column widened by the margin.
-fn passed(side: f64, p: Point, q: Point, margin: f64, mut visit: impl FnMut((i32, i32))) {
+/// Calls `visit` for every cell within `margin` of the segment, until it says true: column by
+/// column, the rows that the segment passes inside the column widened by the margin.
+fn passed(
+    side: f64,
+    p: Point,
+    q: Point,
+    margin: f64,
+    mut visit: impl FnMut((i32, i32)) -> bool,
+) -> bool {
     let (a, b) = (p.min(q), p.max(q));
     let (ax, ay) = (f64::from(a.x), f64::from(a.y));
     let (bx, by) = (f64::from(b.x), f64::from(b.y));
@@ -120,15 +228,10 @@ fn passed(side: f64, p: Point, q: Point, margin: f64, mut visit: impl FnMut((i32
     let (bottom, top) = (cell(low - margin), cell(high + margin));
     if first == last || bottom == top {
         // most segments are shorter than a cell
-        for column in first..=last {
-            for row in bottom..=top {
-                visit((column, row));
-            }
-        }
-        return;
+        return (first..=last).any(|column| (bottom..=top).any(|row| visit((column, row))));
     }
     let slope = if bx > ax { (by - ay) / (bx - ax) } else { 0.0 };
-    for column in first..=last {
+    (first..=last).any(|column| {
         let from = (f64::from(column) * side - margin).clamp(ax, bx);
         let to = (f64::from(column + 1) * side + margin).clamp(ax, bx);
         let (y0, y1) = if bx > ax {
@@ -138,8 +241,6 @@ fn passed(side: f64, p: Point, q: Point, margin: f64, mut visit: impl FnMut((i32
         };
         let bottom = (y0.min(y1) - 1.0).clamp(low, high) - margin;
         let top = (y0.max(y1) + 1.0).clamp(low, high) + margin;
-        for row in cell(bottom)..=cell(top) {
-            visit((column, row));
-        }
-    }
+        (cell(bottom)..=cell(top)).any(|row| visit((column, row)))
+    })
 }

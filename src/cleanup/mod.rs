@@ -56,7 +56,8 @@
 //! and `measure` keep the books of stretches, `graph` and `index` are the graph.
 //!
 //! Large line work is cut into districts that are cleaned on their own (`districts`), all steps in
-//! each; then all steps run again in the whole graph, where districts meet.
+//! each; then in the same way the bands between them, and all steps run a last time in the whole
+//! graph, at the few places where bands meet.
 //!
 //! The aims (separation of h/4, then relaxation) are those of S2Builder's snap rounding, which also
 //! merges first. Unlike it we do not snap to sites: with a veto on each operation bundles of lines
@@ -66,7 +67,7 @@
 //! Near-linear: each operation looks at a few cells of a hash grid; later rounds look only at what
 //! was changed, and an attempt that failed changes nothing. Relaxation asks once in three rounds
 //! what is near (`nearby`). About 50 us of one core a segment with all that is before and after
-//! (malta-osm at 111), a third of it relaxation; districts share cores, the join does not. Memory:
+//! (malta-osm at 111), a third of it relaxation; cores share districts and bands. Memory:
 //! some 300 bytes an edge.
 //!
 //! # Not here
@@ -83,6 +84,7 @@ mod districts;
 mod graph;
 mod importance;
 mod index;
+mod layout;
 mod leftovers;
 mod measure;
 mod nearby;
@@ -117,14 +119,18 @@ use crate::domain::size::SizeWish;
 use crate::geometry::point::Xy;
 use crate::noding::arrangement::Arrangement;
 
-pub use crate::cleanup::districts::District;
-pub use crate::cleanup::districts::GRAIN;
-pub use crate::cleanup::districts::Grain;
 pub use crate::cleanup::districts::Made;
+pub use crate::cleanup::districts::Met;
 pub use crate::cleanup::districts::Site;
+pub use crate::cleanup::districts::clean_band;
 pub use crate::cleanup::districts::clean_district;
 pub use crate::cleanup::districts::join;
+pub use crate::cleanup::districts::meet;
 pub use crate::cleanup::districts::site;
+pub use crate::cleanup::layout::Band;
+pub use crate::cleanup::layout::District;
+pub use crate::cleanup::layout::GRAIN;
+pub use crate::cleanup::layout::Grain;
 
 /// How far a line may be from the mesh edges that represent it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -192,9 +198,12 @@ pub fn clean(
     options: &Options,
 ) -> Cleaned {
     let site = site(domain, sizes, arrangement, options, &GRAIN);
-    let districts = site.districts.iter();
+    let districts = site.districts().iter();
     let made = districts.map(|it| clean_district(&site, it)).collect();
-    join(site, made)
+    let met = meet(&site, made);
+    let bands = site.bands().iter();
+    let bands = bands.map(|it| clean_band(&site, &met, it)).collect();
+    join(site, met, bands)
 }
 
 /// Measures the graph against the input, and makes the arrangement of it.
@@ -347,6 +356,7 @@ const ROUNDS_MAX: usize = 6;
 
 /// All steps, in order.
 fn make_room(graph: &mut Graph) {
+    graph.index.take_nodes(&graph.at);
     simplify::simplify(graph, &FINE, &graph.nodes());
     let least = graph.measure.min_edge;
     for pass in [&GENTLE, &FIRM, &LAST] {

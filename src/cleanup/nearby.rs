@@ -2,7 +2,6 @@
 //! relaxation, in which edges keep their ids and nodes move little.
 
 use crate::cleanup::graph::Graph;
-use crate::cleanup::separate::is_beside;
 
 /// Answers as long as they hold.
 pub(super) struct Nearby {
@@ -56,9 +55,8 @@ impl Nearby {
     /// Edges near a node, not its own.
     pub(super) fn edges(&mut self, graph: &Graph, node: u32) -> &[u32] {
         if self.edges.at[node as usize].is_none() {
-            let p = graph.point(node);
-            let reach = self.reach * graph.size_at_m(node);
-            (graph.index).near(p, p, reach / graph.measure.grid().cell_m, &mut self.found);
+            let reach = self.reach * graph.size_at_m(node) / graph.measure.grid().cell_m;
+            (graph.index).edges_near(graph.point(node), reach, &mut self.found);
             self.found
                 .retain(|&edge| !graph.edges[edge as usize].ends.contains(&node));
             self.edges.put(node, &self.found);
@@ -71,17 +69,11 @@ impl Nearby {
         if self.nodes.at[edge as usize].is_none() {
             let it = &graph.edges[edge as usize];
             let [p, q] = it.ends.map(|end| graph.point(end));
-            let (a, b) = graph.ends_m(edge);
-            let reach = self.reach * it.size_m;
-            (graph.index).near(p, q, reach / graph.measure.grid().cell_m, &mut self.found);
-            let ends = (self.found.iter()).flat_map(|&e| graph.edges[e as usize].ends);
-            let mut nodes: Vec<u32> = ends
-                .filter(|node| !it.ends.contains(node))
-                .filter(|&node| is_beside(graph.metres(node), a, b, reach))
-                .collect();
-            nodes.sort_unstable();
-            nodes.dedup();
-            self.nodes.put(edge, &nodes);
+            let reach = self.reach * it.size_m / graph.measure.grid().cell_m;
+            (graph.index).nodes_near(p, q, reach, &mut self.found);
+            self.found
+                .retain(|&node| !it.ends.contains(&node) && graph.degree(node) > 0);
+            self.nodes.put(edge, &self.found);
         }
         self.nodes.get(edge).expect("it was put there")
     }

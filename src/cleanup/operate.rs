@@ -13,6 +13,7 @@ use crate::cleanup::graph::Fused;
 use crate::cleanup::graph::Graph;
 use crate::cleanup::stations::Absorbed;
 use crate::geometry::point::Point;
+use crate::geometry::predicates::on_segment;
 use crate::geometry::predicates::orient;
 
 /// What a bent edge is bent to.
@@ -262,16 +263,23 @@ impl Graph<'_> {
     /// True if `v` can go to `p` with its edges to these ends, and lose the others.
     fn star_is_clear(&self, v: u32, p: Point, ends: &[u32], vacant: Option<Point>) -> bool {
         let q = self.point(v);
-        let mut sweeps: SmallVec<[Sweep; 8]> = smallvec![Sweep {
-            triangle: [q, p, p],
-            fresh: smallvec![(q, p)],
-        }];
+        // the way of the node itself is a side of every triangle that an edge of it sweeps
+        let mut fresh: SmallVec<[(Point, Point); 2]> = smallvec![(q, p)];
+        let mut sweeps: SmallVec<[Sweep; 8]> = SmallVec::new();
         for &end in ends {
             let end = self.point(end);
+            if on_segment(q, p, end) {
+                return false;
+            }
+            fresh.push((p, end));
             sweeps.push(Sweep {
                 triangle: [q, end, p],
-                fresh: smallvec![(p, end)],
+                fresh: std::mem::take(&mut fresh),
             });
+        }
+        if ends.is_empty() {
+            let triangle = [q, p, p];
+            sweeps.push(Sweep { triangle, fresh });
         }
         let gone: SmallVec<[u32; 6]> = self.star[v as usize].iter().copied().collect();
         let room = Room {

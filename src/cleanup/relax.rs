@@ -18,7 +18,8 @@ pub(super) struct Wanted {
     pub(super) edge: f64,
     /// Least distance of a node from an edge that is not its own.
     pub(super) gap: f64,
-    /// How much of the tolerance may be used: if possible the first, else the second.
+    /// How much of the tolerance may be used: if possible the first, else the second. A node that
+    /// once needed the second keeps to it.
     pub(super) shares: [f64; 2],
     /// How often each node is looked at, at most.
     pub(super) rounds: usize,
@@ -44,6 +45,7 @@ pub(super) fn relax(graph: &mut Graph, wanted: &Wanted, nodes: &[u32]) {
         is_part[node as usize] = graph.is_free(node);
     }
     let mut active = nodes.to_vec();
+    let mut first_share = vec![0_u8; graph.at.len()];
     let mut around = Vec::new();
     let mut nearby = Nearby::new(graph, wanted.gap + DRIFT);
     for round in 0..wanted.rounds {
@@ -60,7 +62,12 @@ pub(super) fn relax(graph: &mut Graph, wanted: &Wanted, nodes: &[u32]) {
             let push = [push[0] + home[0], push[1] + home[1]];
             let push = along_rim(graph, node, push);
             let size = graph.size_at_m(node);
-            if distance(push, [0.0; 2]) > STILL * size && pushed(graph, wanted, node, push) {
+            if distance(push, [0.0; 2]) <= STILL * size {
+                continue;
+            }
+            let from = usize::from(first_share[node as usize]);
+            if let Some(share) = pushed(graph, &wanted.shares[from..], node, push) {
+                first_share[node as usize] = (from + share) as u8;
                 again.push(node);
                 again.extend(graph.neighbours(node));
                 again.extend_from_slice(&around);
@@ -112,10 +119,11 @@ fn stays(graph: &Graph, wanted: &Wanted, node: u32) -> bool {
     is_rim_corner(graph, node) && !graph.star[node as usize].iter().any(is_short)
 }
 
-/// Tries the whole step, then a half and a quarter.
-fn pushed(graph: &mut Graph, wanted: &Wanted, node: u32, push: Xy) -> bool {
+/// Tries the whole step, then a half and a quarter, with each share of the tolerance; returns which
+/// share it took.
+fn pushed(graph: &mut Graph, shares: &[f64], node: u32, push: Xy) -> Option<usize> {
     let at = graph.metres(node);
-    wanted.shares.iter().any(|&share| {
+    shares.iter().position(|&share| {
         [STEP, STEP / 2.0, STEP / 4.0].iter().any(|step| {
             let place = [at[0] + step * push[0], at[1] + step * push[1]];
             let p = graph.measure.on_grid(place);

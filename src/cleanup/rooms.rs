@@ -248,7 +248,7 @@ impl<'g, 'm> Faces<'g, 'm> {
     fn clearance_m(&self, p: Xy, reach_m: f64, found: &mut Vec<u32>) -> f64 {
         let cell_m = self.graph.measure.grid().cell_m;
         let at = self.graph.measure.on_grid(p);
-        (self.graph.index).near(at, at, reach_m / cell_m + 1.0, found);
+        (self.graph.index).edges_near(at, reach_m / cell_m, found);
         let away = found.iter().map(|&edge| {
             let (a, b) = self.graph.ends_m(edge);
             to_segment(p, a, b).0

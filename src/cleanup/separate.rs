@@ -38,9 +38,6 @@ const MEET_EDGE: f64 = 0.2;
 /// The same for two nodes.
 const MEET_NODES: f64 = 0.26;
 
-/// As many edges are usually found around one.
-const FOUND: usize = 64;
-
 /// A node too near to something.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Conflict {
@@ -62,6 +59,8 @@ struct Queue {
     heap: BinaryHeap<Reverse<(u64, Point, u32)>>,
     /// The key under which each node waits; all other entries of it are stale.
     key: Vec<u64>,
+    /// Scratch.
+    found: Vec<u32>,
 }
 
 const NOT_WAITING: u64 = u64::MAX;
@@ -96,13 +95,19 @@ pub(super) fn separate(graph: &mut Graph, narrow: &Narrow, nodes: &[u32]) {
     let mut queue = Queue {
         heap: BinaryHeap::new(),
         key: Vec::new(),
+        found: Vec::new(),
     };
-    let is_part = nodes.len() < graph.at.len() / 2;
     for &node in nodes {
-        if is_part {
-            push_around(graph, narrow, node, &mut queue);
-        } else {
-            push(graph, narrow, node, &mut queue);
+        push(graph, narrow, node, &mut queue);
+    }
+    // of all nodes each one sees its own conflicts
+    if nodes.len() < graph.at.len() / 2 {
+        let stars = nodes.iter().flat_map(|&node| &graph.star[node as usize]);
+        let mut edges: Vec<u32> = stars.copied().collect();
+        edges.sort_unstable();
+        edges.dedup();
+        for edge in edges {
+            push_beside(graph, narrow, edge, &mut queue);
         }
     }
     let mut tries = vec![0_u8; graph.at.len()];
@@ -137,32 +142,32 @@ fn push(graph: &Graph, narrow: &Narrow, node: u32, queue: &mut Queue) {
 /// Queues `centre`, and all nodes that its edges are too near to.
 fn push_around(graph: &Graph, narrow: &Narrow, centre: u32, queue: &mut Queue) {
     push(graph, narrow, centre, queue);
-    let mut found = Vec::with_capacity(FOUND);
-    let mut nodes = Vec::with_capacity(FOUND);
     for &edge in &graph.star[centre as usize] {
-        let it = &graph.edges[edge as usize];
-        let [a, b] = it.ends.map(|node| graph.point(node));
-        let (a_m, b_m) = graph.ends_m(edge);
-        let ratio = distance(a_m, b_m) / (narrow.edge * it.size_m);
-        if ratio < 1.0 {
-            queue.push(graph, it.other(centre), ratio);
-        }
-        let reach = narrow.gap.max(narrow.end) * it.size_m;
-        (graph.index).near(a, b, reach / graph.measure.grid().cell_m, &mut found);
-        nodes.clear();
-        let ends = found
+        push_beside(graph, narrow, edge, queue);
+    }
+}
+
+/// Queues the ends of an edge if it is too short, and all nodes that it is too near to.
+fn push_beside(graph: &Graph, narrow: &Narrow, edge: u32, queue: &mut Queue) {
+    let it = &graph.edges[edge as usize];
+    let (a_m, b_m) = graph.ends_m(edge);
+    let ratio = distance(a_m, b_m) / (narrow.edge * it.size_m);
+    if ratio < 1.0 {
+        it.ends
             .iter()
-            .flat_map(|&near| graph.edges[near as usize].ends);
-        nodes.extend(ends.filter(|&node| is_beside(graph.metres(node), a_m, b_m, reach)));
-        nodes.sort_unstable();
-        nodes.dedup();
-        for &node in &nodes {
-            let size = graph.size_at_m(node);
-            if let Some(ratio) = gap_ratio(graph, narrow, (node, size), edge) {
-                queue.push(graph, node, ratio);
-            }
+            .for_each(|&end| queue.push(graph, end, ratio));
+    }
+    let reach = narrow.gap.max(narrow.end) * it.size_m;
+    let [a, b] = it.ends.map(|node| graph.point(node));
+    let mut found = std::mem::take(&mut queue.found);
+    (graph.index).nodes_near(a, b, reach / graph.measure.grid().cell_m, &mut found);
+    for &node in &found {
+        let (is_there, size) = (graph.degree(node) > 0, graph.size_at_m(node));
+        if is_there && let Some(ratio) = gap_ratio(graph, narrow, (node, size), edge) {
+            queue.push(graph, node, ratio);
         }
     }
+    queue.found = found;
 }
 
 /// How narrow the gap between a node and an edge that is not its own is, if it is too narrow.
@@ -195,10 +200,9 @@ fn conflicts(graph: &Graph, narrow: &Narrow, node: u32) -> Vec<Conflict> {
             });
         }
     }
-    let mut found = Vec::with_capacity(FOUND);
-    let p = graph.point(node);
+    let mut found = Vec::new();
     let reach = narrow.gap.max(narrow.end) * size / graph.measure.grid().cell_m;
-    graph.index.near(p, p, reach, &mut found);
+    (graph.index).edges_near(graph.point(node), reach, &mut found);
     for edge in found {
         if let Some(ratio) = gap_ratio(graph, narrow, (node, size), edge) {
             let with = With::Edge(edge);

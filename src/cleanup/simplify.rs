@@ -138,23 +138,19 @@ fn keeps_distance(graph: &Graph, smooth: &Smooth, node: u32) -> bool {
     let (a, b) = (near[0], near[1]);
     let [p, v, q] = [a, node, b].map(|it| graph.metres(it));
     let limit = smooth.gap * graph.size_at_m(node);
-    let mut found = Vec::new();
     let reach = limit / graph.measure.grid().cell_m;
-    graph
-        .index
-        .near(graph.point(a), graph.point(b), reach, &mut found);
-    found.iter().all(|&edge| {
-        graph.edges[edge as usize].ends.iter().all(|&it| {
-            if it == a || it == b || it == node {
-                return true;
-            }
-            let at = graph.metres(it);
-            let (gap, t) = to_segment(at, p, q);
-            gap >= limit
-                || t <= 0.0
-                || t >= 1.0
-                || gap >= to_segment(at, p, v).0.min(to_segment(at, v, q).0)
-        })
+    let (from, to) = (graph.point(a), graph.point(b));
+    let comes_nearer = |it: u32, at: Point| {
+        if it == a || it == b || it == node {
+            return false;
+        }
+        let at = graph.measure.metres(at);
+        let (gap, t) = to_segment(at, p, q);
+        let is_beside = 0.0 < t && t < 1.0;
+        gap < limit && is_beside && gap < to_segment(at, p, v).0.min(to_segment(at, v, q).0)
+    };
+    !(graph.index).any(from, to, reach, |held| {
+        (0..2).any(|k| comes_nearer(held.ends[k], held.at()[k]))
     })
 }
 

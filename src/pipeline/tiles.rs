@@ -48,7 +48,8 @@ pub(super) fn node(domain: &Domain, tile_cells: i32, count: &(dyn Fn(u64) + Sync
     noding::stitch(domain, nodes)
 }
 
-/// Cleans all districts in parallel and joins them. They do not depend on the tiles.
+/// Cleans all districts in parallel, then all bands between them, and joins them. They do not depend
+/// on the tiles.
 pub(super) fn clean(
     domain: &Domain,
     sizes: &SizeWish,
@@ -57,15 +58,20 @@ pub(super) fn clean(
     count: &(dyn Fn(u64) + Sync),
 ) -> Cleaned {
     let site = cleanup::site(domain, sizes, arrangement, options, &cleanup::GRAIN);
-    let share = 1000 / (site.districts.len() + 1) as u64;
-    let made = (site.districts.par_iter())
-        .map(|district| {
-            let made = cleanup::clean_district(&site, district);
-            count(share);
-            made
-        })
+    let parts = site.districts().len() + site.bands().len();
+    let share = 1000 / (parts + 1) as u64;
+    let counted = |made| {
+        count(share);
+        made
+    };
+    let made = (site.districts().par_iter())
+        .map(|it| counted(cleanup::clean_district(&site, it)))
         .collect();
-    cleanup::join(site, made)
+    let met = cleanup::meet(&site, made);
+    let bands = (site.bands().par_iter())
+        .map(|it| counted(cleanup::clean_band(&site, &met, it)))
+        .collect();
+    cleanup::join(site, met, bands)
 }
 
 /// Walks all tiles in parallel and joins the walks into sub-domains.

@@ -272,8 +272,10 @@ proptest! {
         let input = noded(&domain);
         let sizes = SizeWish::uniform(size, 1);
         let site = cleanup::site(&domain, &sizes, input.clone(), &usual(&domain), &TINY);
-        let made = site.districts.iter().map(|it| cleanup::clean_district(&site, it)).collect();
-        let result = cleanup::join(site, made);
+        let made = site.districts().iter().map(|it| cleanup::clean_district(&site, it)).collect();
+        let met = cleanup::meet(&site, made);
+        let bands = site.bands().iter().map(|it| cleanup::clean_band(&site, &met, it)).collect();
+        let result = cleanup::join(site, met, bands);
         let verdict = cleanup::check::check(&domain, &sizes, &usual(&domain), &input, &result);
         prop_assert_eq!(verdict, Ok(()));
     }
@@ -282,17 +284,38 @@ proptest! {
     fn districts_at_once_or_one_by_one_are_the_same(domain in messy_domain()) {
         let sizes = SizeWish::uniform(3.0, 1);
         let site = || cleanup::site(&domain, &sizes, noded(&domain), &usual(&domain), &TINY);
-        let (first, second) = (site(), site());
-        let clean = |it| cleanup::clean_district(&first, it);
-        let backwards: Vec<_> = first.districts.iter().rev().map(clean).collect();
-        let one_by_one: Vec<_> = backwards.into_iter().rev().collect();
-        let at_once: Vec<_> = second
-            .districts
-            .par_iter()
-            .map(|it| cleanup::clean_district(&second, it))
-            .collect();
-        prop_assert_eq!(cleanup::join(first, one_by_one), cleanup::join(second, at_once));
+        prop_assert_eq!(joined_backwards(site()), joined_at_once(site()));
     }
+}
+
+/// All districts, then all bands, each from the last to the first.
+fn joined_backwards(site: cleanup::Site) -> cleanup::Cleaned {
+    let districts = site.districts().iter().rev();
+    let mut made: Vec<_> = districts
+        .map(|it| cleanup::clean_district(&site, it))
+        .collect();
+    made.reverse();
+    let met = cleanup::meet(&site, made);
+    let bands = site.bands().iter().rev();
+    let mut bands: Vec<_> = bands
+        .map(|it| cleanup::clean_band(&site, &met, it))
+        .collect();
+    bands.reverse();
+    cleanup::join(site, met, bands)
+}
+
+/// The same on all cores.
+fn joined_at_once(site: cleanup::Site) -> cleanup::Cleaned {
+    let districts = site.districts().par_iter();
+    let made = districts
+        .map(|it| cleanup::clean_district(&site, it))
+        .collect();
+    let met = cleanup::meet(&site, made);
+    let bands = site.bands().par_iter();
+    let bands = bands
+        .map(|it| cleanup::clean_band(&site, &met, it))
+        .collect();
+    cleanup::join(site, met, bands)
 }
 
 /// A grid of streets, each drawn twice, over 3 km: enough for districts of the usual grain.
@@ -309,13 +332,9 @@ fn a_town_is_cleaned_by_districts() {
     let town = domain(&lines);
     let sizes = SizeWish::uniform(12.0, 1);
     let site = cleanup::site(&town, &sizes, noded(&town), &usual(&town), &cleanup::GRAIN);
-    assert!(site.districts.len() > 3, "{}", site.districts.len());
-    let made: Vec<_> = site
-        .districts
-        .par_iter()
-        .map(|it| cleanup::clean_district(&site, it))
-        .collect();
-    assert_eq!(cleanup::join(site, made), cleaned(&town, 12.0));
+    assert!(site.districts().len() > 3, "{}", site.districts().len());
+    assert_eq!(site.bands().len(), site.districts().len() - 1);
+    assert_eq!(joined_at_once(site), cleaned(&town, 12.0));
 }
 
 /// One file a case: `size`, `min_edge` metres, `corner` degrees, then lines `what[:kind] x y x y ...` in metres; `rule KIND KEY
