@@ -88,7 +88,7 @@ pub fn estimate(job: &Job, listener: Listener) -> Result<Estimate, Error> {
 fn build_here(job: &Job, listener: Listener) -> Result<Outcome, Error> {
     let watch = Stopwatch::new(listener);
     let partial = chunk::writer::partial_of(&job.output);
-    let plan = plan::plan(job, &watch, job.resume.then_some(partial.as_path()))?;
+    let mut plan = plan::plan(job, &watch, job.resume.then_some(partial.as_path()))?;
     let writer = begin(job, &plan, &partial)?;
     watch.stage("frame", 1, |_| -> Result<_, Error> {
         let frame = frame::frame(&plan);
@@ -103,6 +103,8 @@ fn build_here(job: &Job, listener: Listener) -> Result<Outcome, Error> {
         Ok::<_, Error>((receipts, format!("{quads} quads")))
     })?;
     let findings = finish(job, &plan, &partial, writer, receipts)?;
+    // the check maps the files that were made of it
+    plan.shed();
     let verdict = watch.stage("check", 1, |_| -> Result<_, Error> {
         let verdict = check::check(&Mesh::open(&job.output)?, &check::OPTIONS);
         let note = match verdict.holds() {

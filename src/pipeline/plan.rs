@@ -22,6 +22,7 @@ use crate::noding::arrangement::Arrangement;
 use crate::noding::arrangement::Piece;
 use crate::parity;
 use crate::parity::balance::Balance;
+use crate::parity::cuts::Cuts;
 use crate::partition::subdomains::Partition;
 use crate::pipeline::error::Error;
 use crate::pipeline::job::Job;
@@ -60,6 +61,23 @@ impl Plan {
             partition: &self.city.partition,
             counts: &self.city.balance.counts,
             first: &self.first,
+        }
+    }
+
+    /// Frees what only meshing and writing need. What is told of the build stays: counts, figures,
+    /// findings.
+    pub fn shed(&mut self) {
+        self.domain.lines = Vec::new();
+        self.first = Vec::new();
+        self.city.arrangement = Arrangement::default();
+        self.city.goals = Goals::default();
+        (self.city.balance.counts, self.city.balance.cuts) = (Vec::new(), Cuts::default());
+        self.city.changes = Vec::new();
+        for curve in &mut self.city.partition.curves {
+            (curve.nodes, curve.edges) = (Vec::new(), Vec::new());
+        }
+        for subdomain in &mut self.city.partition.subdomains {
+            subdomain.walks = Vec::new();
         }
     }
 
