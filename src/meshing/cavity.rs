@@ -145,7 +145,7 @@ fn fill(draft: &mut Draft, visits: &Visits, hole: &[u32], size_m: f64) -> Option
     let scattered = scatter(&outline, size_m);
     let mut best: Option<(f64, Draft)> = None;
     for inner in [&[][..], &scattered[..]] {
-        let Some(triangles) = triangulate(&outline, inner).filter(is_connected) else {
+        let Some(triangles) = triangulate(&outline, inner).filter(can_be_paired) else {
             continue;
         };
         let made = last_resort::mesh(&pairing::join(&triangles, outline.len()));
@@ -167,8 +167,12 @@ fn fill(draft: &mut Draft, visits: &Visits, hole: &[u32], size_m: f64) -> Option
     Some(quads)
 }
 
-/// True if one can go from any triangle to any other: two parts that meet in a node may be odd
-/// each.
+/// True if there is an even number of triangles, and one can go from any to any other: two parts that
+/// meet in a node may be odd each.
+fn can_be_paired(triangles: &Triangles) -> bool {
+    triangles.corners.len().is_multiple_of(2) && is_connected(triangles)
+}
+
 fn is_connected(triangles: &Triangles) -> bool {
     let mut seen = vec![false; triangles.neighbours.len()];
     let mut open = vec![0_u32];

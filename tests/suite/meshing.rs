@@ -61,6 +61,12 @@ fn fair_shapes_are_meshed_well() {
     assert!(sum / quads as f64 > 0.93, "mean {}", sum / quads as f64);
 }
 
+/// A hole around a bad quad that has an odd number of triangles cannot be paired: it stays as it is.
+#[test]
+fn an_odd_hole_is_not_filled() {
+    verify("fair 2636", &cases::fair(2636), &ALL);
+}
+
 #[test]
 fn cruel_shapes_keep_all_promises() {
     let mut with_holes = 0;
