@@ -93,9 +93,9 @@
 //! # Stability
 //! One moved line changes few counts far away, but not none: the optimum is one of the whole city, and
 //! where half of all sub-domains are odd a chain of exchanges that cost next to nothing may go far.
-//! Of real curves more than five sub-domains away from a moved line two in a thousand change (bench
-//! `stability`), which no small price undoes, as clean-up bends lines that far; with patterns,
-//! whose multipliers share one stride, four. Goals and costs are local (`intervals`).
+//! Of real curves more than five sub-domains away from a moved line three to four in a thousand change
+//! (bench `stability`), with patterns or without, which no small price undoes, as clean-up bends lines
+//! that far. Goals and costs are local (`intervals`).
 //!
 //! With earlier counts ([`balance_near`]) each curve keeps its own or takes the best one, and a change
 //! has a price of 0.02: one more T-join, on the curves whose parity differs (`keep`). So no chain goes
