@@ -9,7 +9,6 @@ use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;
 use crate::domain::line::LineId;
 use crate::geometry::point::Xy;
-use crate::noding::arrangement::Arrangement;
 use crate::noding::arrangement::Piece;
 use smallvec::SmallVec;
 
@@ -19,14 +18,14 @@ pub(super) type Stretch = (LineId, f64, f64);
 /// Stretches shorter than this are rounding, metres.
 const ROUNDING_M: f64 = 1e-6;
 
-/// What the input has and the result does not, with the reason, and the table of figures.
-pub(super) fn audit(graph: &Graph, input: &Arrangement) -> (Vec<Dropped>, Tally) {
-    let wanted = stretches(graph, input.pieces.iter());
+/// What came in and is not in the result, with the reason, and the table of figures. `given`: the
+/// [`stretches`] of the input.
+pub(super) fn audit(graph: &Graph, given: &[Stretch]) -> (Vec<Dropped>, Tally) {
     let live = graph.edges.iter().filter(|edge| edge.alive);
     let there = stretches(graph, live.flat_map(|edge| &edge.pieces));
     let carriers = carriers(graph);
     let mut dropped: Vec<Dropped> = Vec::new();
-    let missing = subtract(&wanted, &there);
+    let missing = subtract(given, &there);
     let mut known: Vec<&Dropped> = graph.dropped.iter().collect();
     known.sort_by_key(|it| it.line);
     for (line, from_m, to_m) in missing
@@ -42,7 +41,7 @@ pub(super) fn audit(graph: &Graph, input: &Arrangement) -> (Vec<Dropped>, Tally)
         });
     }
     let mut tally = displacements(graph);
-    tally.length_m = wanted.iter().map(|(_, from, to)| to - from).sum();
+    tally.length_m = given.iter().map(|(_, from, to)| to - from).sum();
     tally.length_dropped_m = (dropped.iter())
         .filter(|it| it.reason != Reason::Shrunk)
         .map(|it| it.to_m - it.from_m)

@@ -159,8 +159,7 @@ pub fn clean_band(site: &Site, met: &Met, band: &Band) -> Made {
         edges.extend(here.cloned());
     };
     for (district, made) in site.layout.districts.iter().zip(&met.made) {
-        let Window { min, max } = district.window;
-        if comes_into([min, Point::new(max.x - 1, max.y - 1)], &band.window) {
+        if district.window.meets(&band.window) {
             take(&made.edges);
         }
     }
@@ -233,9 +232,8 @@ fn joined<'a>(site: &'a Site, met: Met, bands: Vec<Made>) -> Graph<'a> {
     };
     let windows: Vec<Window> = site.bands().iter().map(|it| it.window).collect();
     for (district, mut it) in site.layout.districts.iter().zip(met.made) {
-        let Window { min, max } = district.window;
-        let comes_in = |band: &&Window| comes_into([min, Point::new(max.x - 1, max.y - 1)], band);
-        let here: Vec<Window> = windows.iter().filter(comes_in).copied().collect();
+        let all = windows.iter().copied();
+        let here: Vec<Window> = all.filter(|it| it.meets(&district.window)).collect();
         keep(it.edges, &here);
         changes.append(&mut it.changes);
         dropped.append(&mut it.dropped);

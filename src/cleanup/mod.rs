@@ -66,7 +66,7 @@
 //! # Cost
 //! Near-linear: each operation looks at a few cells of a hash grid; later rounds look only at what
 //! was changed, and an attempt that failed changes nothing. Relaxation asks once in three rounds
-//! what is near (`nearby`). About 50 us of one core a segment with all that is before and after
+//! what is near (`nearby`). About 40 us of one core a segment with all that is before and after
 //! (malta-osm at 111), a third of it relaxation; cores share districts and bands. Memory:
 //! some 300 bytes an edge.
 //!
@@ -208,7 +208,8 @@ pub fn clean(
 
 /// Measures the graph against the input, and makes the arrangement of it.
 fn finish(graph: Graph, input: Arrangement, is_on: bool) -> Cleaned {
-    let (mut dropped, mut tally) = audit::audit(&graph, &input);
+    let given = audit::stretches(&graph, input.pieces.iter());
+    let (mut dropped, mut tally) = audit::audit(&graph, &given);
     let sharp_before = sharp::sharp_angles(&input, SHARP_DEG);
     let findings = leftovers::leftovers(&graph);
     let (arrangement, torn) = match is_on {
@@ -216,7 +217,6 @@ fn finish(graph: Graph, input: Arrangement, is_on: bool) -> Cleaned {
             dropped.sort_by_key(|it| it.line);
             let limits_m = &graph.measure.tolerance_m;
             let domain = graph.measure.domain;
-            let given = audit::stretches(&graph, input.pieces.iter());
             thread::thread(domain, graph.arrangement(), &given, &dropped, limits_m)
         }
         false => {

@@ -32,8 +32,7 @@ pub(super) struct Wedge {
 
 /// Zips the wedges at `nodes`, the sharpest first.
 pub(super) fn zip_wedges(graph: &mut Graph, zip: &Zip, nodes: &[u32]) {
-    let wedges = wedges(graph, zip.below_deg, nodes);
-    for wedge in wedges {
+    for wedge in wedges(graph, zip.below_deg, nodes) {
         let is_there = [wedge.a, wedge.b]
             .iter()
             .all(|&it| graph.find(wedge.hub, it).is_some());

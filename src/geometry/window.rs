@@ -16,4 +16,12 @@ impl Window {
     pub fn owns(&self, p: Point) -> bool {
         (self.min.x..self.max.x).contains(&p.x) && (self.min.y..self.max.y).contains(&p.y)
     }
+
+    /// True if both have a cell in common; neither is empty.
+    pub fn meets(&self, other: &Window) -> bool {
+        self.min.x < other.max.x
+            && other.min.x < self.max.x
+            && self.min.y < other.max.y
+            && other.min.y < self.max.y
+    }
 }

@@ -86,14 +86,7 @@ pub fn plan(
         push_curve(&mut goals, &wishes(curve), options);
     }
     minima::raise(&mut goals, arrangement, partition, options);
-    rows::raise(
-        &mut goals,
-        domain,
-        sizes,
-        arrangement,
-        partition,
-        options.least_edge,
-    );
+    rows::raise(&mut goals, domain, sizes, arrangement, partition, options);
     for (id, curve) in partition.curves.iter().enumerate() {
         goals.weight[id] = weight(&goals, id, &wishes(curve));
     }

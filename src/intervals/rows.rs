@@ -2,13 +2,14 @@
 
 use crate::domain::line::Domain;
 use crate::domain::size::SizeWish;
+use crate::intervals::Options;
 use crate::intervals::goals::Goals;
 use crate::noding::arrangement::Arrangement;
 use crate::partition::subdomains::Partition;
 use crate::seams::pitch_cells;
 
 /// Gives each rung as many intervals as the lines at its ends wish rows, the more demanding one of
-/// them, but none shorter than `least_edge` sizes. A rung is an edge without pieces from line to
+/// them, but none shorter than [`Options::least_edge`] sizes. A rung is a seam of one edge from line to
 /// line, shorter than two sizes; seams through open country are longer.
 pub(super) fn raise(
     goals: &mut Goals,
@@ -16,7 +17,7 @@ pub(super) fn raise(
     sizes: &SizeWish,
     arrangement: &Arrangement,
     partition: &Partition,
-    least_edge: f64,
+    options: &Options,
 ) {
     if sizes.rows_by_kind.iter().all(|&rows| rows <= 1) {
         return;
@@ -31,11 +32,11 @@ pub(super) fn raise(
         let [a, b] = ends.map(|node| arrangement.points[node as usize]);
         let rows = ends.map(|node| wished[node as usize]);
         let length = a.distance(b) / size;
-        let is_rung = arrangement.pieces_of(edge).is_empty() && !rows.contains(&0) && length < 2.0;
+        let is_rung = curve.is_seam && !rows.contains(&0) && length < 2.0;
         if !is_rung || goals.lower[id] == goals.upper[id] {
             continue;
         }
-        let room = (length / least_edge).max(1.0) as u32;
+        let room = (length / options.least_edge).max(1.0) as u32;
         let rows = rows[0].max(rows[1]).min(room);
         goals.lower[id] = goals.lower[id].max(rows);
         goals.upper[id] = goals.upper[id].max(rows + 3);
