@@ -2,8 +2,8 @@
 //! plain form, in the same run.
 //!
 //! `cargo bench --bench parity [-- LARGEST] [--million] [FOLDER.polder | CASE.geojson:SIZE_M]...`: synthetic
-//! networks with up to LARGEST sub-domains (default 100 000; `--smoke`: 1000; `--million` adds the
-//! million; 0: none), and the networks of meshes, finished or made here: parity with wishes scaled to 1
+//! networks with up to LARGEST sub-domains (default 100 000; `--smoke`: 1000; 0: none), with `--million` those
+//! of a million, parity alone; and the networks of meshes, finished or made here: parity with wishes scaled to 1
 //! to 20 intervals a curve (not with `--built`), patterns as built, where weights fit the wishes. Prints
 //! the tables of `benches/README.md`.
 
@@ -16,6 +16,7 @@ use polder::intervals::goals::Goals;
 use polder::parity;
 use polder::parity::Options;
 use polder::parity::balance::Balance;
+use polder::parity::balance::Solved;
 use polder::parity::check::check;
 use polder::parity::check::fits;
 use polder::partition::subdomains::Curve;
@@ -37,27 +38,30 @@ use std::path::PathBuf;
 const PLAIN_MAX: usize = 10_500;
 const PLAIN_S: [f64; 2] = [10.0, 4.0];
 
+/// Sub-domains up to which patterns are tried.
+const PATTERNS_MAX: usize = 150_000;
+
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let smoke = words.iter().any(|word| word == "--smoke");
     let default = if smoke { 1000 } else { 100_000 };
-    let mut largest = words
+    let largest = words
         .iter()
         .find_map(|word| word.parse().ok())
         .unwrap_or(default);
+    let mut sizes = vec![1_000, 10_000, 100_000];
+    sizes.retain(|&size| size <= largest);
     if words.iter().any(|word| word == "--million") {
-        largest = 1_000_000;
+        sizes = vec![1_000_000];
     }
     println!(
-        "| network | sub-domains | curves | odd share | rows | events a curve | objective | bound | gap % | CPU s | bytes a curve | plain form: gap %, CPU s | patterns: blocks | all fit before, after % | four-sided before, after % | gap % | CPU s | bytes a curve |"
+        "| network | sub-domains | curves | odd share | rows | HiGHS: parts, left, rows, added, branched | events a curve | objective | bound | gap % | CPU s | bytes a curve | plain form: gap %, CPU s | patterns: blocks | all fit before, after % | four-sided before, after % | gap % | CPU s | bytes a curve |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     for family in ["grid", "voronoi", "long"] {
-        for subdomains in [1_000, 10_000, 100_000, 1_000_000] {
-            if subdomains <= largest {
-                let (partition, goals) = network(family, subdomains);
-                row(family, &partition, &goals, PLAIN_S[0]);
-            }
+        for &subdomains in &sizes {
+            let (partition, goals) = network(family, subdomains);
+            row(family, &partition, &goals, PLAIN_S[0]);
         }
     }
     let folder = std::env::temp_dir().join(format!("polder-parity-{}", std::process::id()));
@@ -110,11 +114,12 @@ fn row(name: &str, partition: &Partition, goals: &Goals, plain_s: f64) {
     };
     let curves = partition.curves.len() as f64;
     println!(
-        "| {name} | {} | {} | {:.2} | {} | {:.1} | {:.3} | {:.3} | {:.4} | {seconds:.2} | {:.0} | {plain} | {} |",
+        "| {name} | {} | {} | {:.2} | {} | {} | {:.1} | {:.3} | {:.3} | {:.4} | {seconds:.2} | {:.0} | {plain} | {} |",
         partition.subdomains.len(),
         partition.curves.len(),
         made.odd_share,
         made.cuts.value2.len(),
+        said(&made.solved),
         made.events as f64 / curves,
         made.objective,
         made.bound,
@@ -124,10 +129,16 @@ fn row(name: &str, partition: &Partition, goals: &Goals, plain_s: f64) {
     );
 }
 
+/// What HiGHS solved, in numbers.
+fn said(it: &Solved) -> String {
+    let numbers = [it.parts, it.left, it.rows, it.added, it.branched];
+    numbers.map(|it| it.to_string()).join(", ")
+}
+
 /// What patterns do beyond parity alone.
 fn patterns(partition: &Partition, goals: &Goals, alone: &Balance) -> String {
-    if goals.blocks.is_empty() {
-        return "0 | | | | |".to_string();
+    if goals.blocks.is_empty() || partition.subdomains.len() > PATTERNS_MAX {
+        return "| | | | |".to_string();
     }
     let (both, seconds, bytes) = measured(partition, goals, &parity_options(MATCH_SIDES));
     let fits = [alone, &both].map(|it| fits(partition, goals, &it.counts));

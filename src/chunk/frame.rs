@@ -39,7 +39,7 @@ impl From<Balance> for Certificate {
             objective: units(balance.objective),
             base: units(balance.base),
             bound: units(balance.bound),
-            claimed: balance.claimed,
+            claimed: balance.solved.claimed,
             set_parent: balance.cuts.parent,
             set_dual2: balance.cuts.value2,
             set_of: balance.cuts.set_of,

@@ -31,18 +31,31 @@ pub struct Balance {
     pub odd_share: f64,
     /// Sub-domains that free rounding leaves odd.
     pub odd_subdomains: u32,
-    /// Rows and columns of the programme that HiGHS solved; 0 if it was not asked or gave up.
-    pub rows: u32,
-    /// See `rows`.
-    pub columns: u32,
-    /// The optimum that HiGHS claims for it, with `base`; beside `bound`, not part of the proof.
-    pub claimed: Option<f64>,
-    /// True if HiGHS had to branch (its linear programme had several optima).
-    pub branched: bool,
+    /// What HiGHS says of the programme of parity alone.
+    pub solved: Solved,
     /// Work done by the matching, queue entries.
     pub events: u64,
     /// The certificate: odd sets of sub-domains and their dual values, half cost units.
     pub cuts: Cuts,
+}
+
+/// What HiGHS says of one programme; it comes beside the proof, and is no part of it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Solved {
+    /// Parts that share no sub-domain, curve or row, small ones counted together.
+    pub parts: u32,
+    /// Parts left at the matching's choice, which is as good: beyond the limits of work.
+    pub left: u32,
+    /// Rows of the parts that were solved, those added apart.
+    pub rows: u32,
+    /// Columns of them.
+    pub columns: u32,
+    /// Rows that its own solutions called for.
+    pub added: u32,
+    /// Parts that had to be branched on.
+    pub branched: u32,
+    /// The optimum that it claims, with all that is decided outside; `None` if a part was left.
+    pub claimed: Option<f64>,
 }
 
 /// What was done so that the counts of blocks fit patterns, with a bound of its own.
@@ -62,6 +75,8 @@ pub struct Structure {
     pub bound: f64,
     /// T-joins that the bound took.
     pub rounds: u32,
+    /// What HiGHS says of the programme that the best multipliers tilt.
+    pub solved: Solved,
     /// Neighbourhoods that HiGHS found better counts for.
     pub improved: u32,
     /// The proof, first part: a multiplier for each rule of each block, cost units.

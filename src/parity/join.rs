@@ -5,6 +5,7 @@ use crate::parity::flood::Touch;
 use crate::parity::graph::Edge;
 use crate::parity::graph::Graph;
 use crate::parity::graph::OUTSIDE;
+use crate::parity::groups::Groups;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -12,14 +13,7 @@ use std::collections::BinaryHeap;
 ///
 /// They run along edges without slack (complementary slackness), so only those are searched.
 pub fn along_pairs(graph: &Graph, cuts: &Cuts, pairs: &[Touch]) -> Vec<bool> {
-    let tight = (graph.edges.iter().enumerate())
-        .filter(|(_, edge)| cuts.slack2(edge) == 0)
-        .map(|(id, edge)| Edge {
-            label: id as u32,
-            ..*edge
-        })
-        .collect();
-    let tight = Graph::new(graph.odd.clone(), tight);
+    let tight = part_of(graph, |id| cuts.slack2(&graph.edges[id]) == 0);
     let nowhere = Seen {
         stamp: 0,
         distance: 0,
@@ -34,11 +28,7 @@ pub fn along_pairs(graph: &Graph, cuts: &Cuts, pairs: &[Touch]) -> Vec<bool> {
     for pair in pairs {
         search.flip_path(&tight, *pair, &mut chosen);
     }
-    let mut all = vec![false; graph.edges.len()];
-    for (edge, chosen) in tight.edges.iter().zip(chosen) {
-        all[edge.label as usize] = chosen;
-    }
-    all
+    in_whole(graph, &tight, chosen)
 }
 
 #[derive(Clone, Copy)]
@@ -133,6 +123,36 @@ impl Search {
     }
 }
 
+/// The choice that makes all nodes even along a forest of the edges `taken`; `None` if they do not
+/// join the odd nodes. Of a choice that is even already and has no ring, that is all.
+pub fn within(graph: &Graph, cuts: &Cuts, taken: &[bool]) -> Option<Vec<bool>> {
+    let part = part_of(graph, |id| taken[id]);
+    if part.hopeless().is_some() {
+        return None;
+    }
+    let chosen = along_forest(&part, cuts);
+    Some(in_whole(graph, &part, chosen))
+}
+
+/// The graph with some of its edges; labels are their ids.
+fn part_of(graph: &Graph, is_in: impl Fn(usize) -> bool) -> Graph {
+    let edges = graph.edges.iter().enumerate();
+    let edges = edges.filter(|(id, _)| is_in(*id)).map(|(id, edge)| Edge {
+        label: id as u32,
+        ..*edge
+    });
+    Graph::new(graph.odd.clone(), edges.collect())
+}
+
+/// A choice in a part of the graph, by edges of the graph.
+fn in_whole(graph: &Graph, part: &Graph, chosen: Vec<bool>) -> Vec<bool> {
+    let mut all = vec![false; graph.edges.len()];
+    for (edge, chosen) in part.edges.iter().zip(chosen) {
+        all[edge.label as usize] = chosen;
+    }
+    all
+}
+
 /// The choice within a spanning forest that prefers edges with little slack: what is left to do
 /// when the matching ran into its limit of work.
 pub fn along_forest(graph: &Graph, cuts: &Cuts) -> Vec<bool> {
@@ -143,14 +163,12 @@ pub fn along_forest(graph: &Graph, cuts: &Cuts) -> Vec<bool> {
         (cuts.slack2(edge), edge.weight, id)
     });
     let node = |id: u32| if id == OUTSIDE { n } else { id as usize };
-    let mut leader: Vec<usize> = (0..=n).collect();
+    let mut groups = Groups::new(n + 1);
     let mut tree: Vec<Vec<(usize, u32)>> = vec![Vec::new(); n + 1];
     for id in order {
         let edge = &graph.edges[id as usize];
         let (a, b) = (node(edge.a), node(edge.b));
-        let (la, lb) = (find(&mut leader, a), find(&mut leader, b));
-        if la != lb {
-            leader[la] = lb;
+        if groups.join(a as u32, b as u32) {
             tree[a].push((b, id));
             tree[b].push((a, id));
         }
@@ -183,12 +201,4 @@ pub fn along_forest(graph: &Graph, cuts: &Cuts) -> Vec<bool> {
         }
     }
     chosen
-}
-
-fn find(leader: &mut [usize], mut node: usize) -> usize {
-    while leader[node] != node {
-        leader[node] = leader[leader[node]];
-        node = leader[node];
-    }
-    node
 }

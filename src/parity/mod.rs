@@ -37,11 +37,14 @@
 //!    with an odd number of odd sub-domains, which describe the T-join polyhedron exactly (Edmonds
 //!    and Johnson 1973). They are the certificate.
 //! 4. `join`: the matched pairs' shortest paths are the T-join.
-//! 5. `solver`: the linear programme of exactly those rows, its columns thinned by reduced cost
-//!    (what costs more than the gap is in no better solution), goes to HiGHS; branch and bound only
-//!    if a gap is left and its optimum is not whole. Its choice is taken if it is even and no dearer. Without the
-//!    rows HiGHS has no chance: the plain form does not see parity (at 10 000 sub-domains it finds
-//!    nothing in two minutes); with rows found in rounds it stalls a few thousandths short.
+//! 5. `solver`: HiGHS solves the linear programme of those rows, thinned by reduced cost (what costs more
+//!    than the gap is in no better solution) and cut into `parts` that share nothing. Where its solution
+//!    leaves a group of sub-domains odd, that row is added and it goes on from its basis; what is in
+//!    pieces then goes to branch and bound, which starts from the matching's choice. Its optimum is the
+//!    bound, its choice the counts; the certificate says the same in whole numbers, and has the last
+//!    word. Parts of more than `rows_max` rows stay as the matching left them (none below 100 thousand
+//!    sub-domains, a fifth of all rows at a million). Without the matching's rows HiGHS has no chance:
+//!    the plain form does not see parity (at 10 000 sub-domains it finds nothing in two minutes).
 //! 6. `structure`: cost and the patterns' price together; see below.
 //! 7. `keep`, if there are earlier counts: they stay where others are hardly better; see below.
 //!
@@ -79,15 +82,16 @@
 //!   programme with all odd-cut rows of all roundings, which nobody could write down.
 //! - `draft`, heuristic: each T-join's counts, mended by moves of two along rows of curves, are
 //!   candidates. Near the top the T-join obeys nearly all rules by itself, so little is to mend.
+//! - `solver` again, at the best multipliers: what HiGHS finds is the bound, and one more candidate.
 //! - `neighbourhoods` with `solver_rules`, where the gap is still too wide: where the best counts exceed what
 //!   the bound accounts for, HiGHS solves some forty sub-domains exactly, all others held.
 //!
 //! What is proven of `counts` is [`Balance::structure_gap`].
 //!
 //! # Cost
-//! Near-linear in curves; about 240 bytes a curve at the peak. Parity alone is one matching: proven
-//! optimal in 0.1 s of CPU for 10 thousand sub-domains, 1 s for 100 thousand, 7 to 14 s for a
-//! million. Patterns are some four to eight more on the same graph and the relaxation, which is worth two
+//! Near-linear in curves; about 240 bytes a curve at the peak. Parity alone is one matching and HiGHS'
+//! turn: proven optimal in 0.1 s of CPU for 10 thousand sub-domains, 2 to 15 s for 100 thousand (HiGHS
+//! spends it on one part of 47 thousand rows), 10 to 40 s for a million. Patterns are some four to eight more on the same graph and the relaxation, which is worth two
 //! of them. `benches/README.md` has the measurements, HiGHS on the plain form beside them.
 //!
 //! # Stability
@@ -114,6 +118,7 @@
 
 use crate::intervals::goals::Goals;
 use crate::parity::balance::Balance;
+use crate::parity::balance::Solved;
 use crate::parity::cuts::Cuts;
 use crate::parity::error::Error;
 use crate::parity::graph::Graph;
@@ -132,10 +137,12 @@ mod draft;
 pub mod error;
 mod flood;
 pub mod graph;
+mod groups;
 mod join;
 mod keep;
 mod matching;
 mod neighbourhoods;
+mod parts;
 pub mod programme;
 mod relaxation;
 mod solver;
@@ -148,9 +155,9 @@ mod tilts;
 pub struct Options {
     /// Queue entries that the matching may handle; it needs 10 to 30 a curve.
     pub events_max: u64,
-    /// Branch-and-bound nodes of HiGHS.
+    /// Branch-and-bound nodes of HiGHS in each part.
     pub nodes_max: i32,
-    /// Rows up to which HiGHS is asked; above, the certified matching stands alone.
+    /// Rows of a part up to which HiGHS is asked; above, its certified matching stands alone.
     pub rows_max: u32,
     /// Price of a pattern's excess of one, in the unit of costs, the relative deviation of one
     /// curve. 0: parity alone.
@@ -182,25 +189,13 @@ pub fn balance_near(
     let programme = Programme::new(partition, goals, None)?;
     let base = programme.base;
     let graph = &programme.graph;
-    let join = minimum_join(graph, options.events_max);
-    let gap2 = 2 * join.weight(graph) - join.cuts.bound2();
+    let (join, solved) = solved_join(graph, base, options);
     let mut balance = Balance {
         events: join.events,
+        solved,
         ..Balance::default()
     };
-    let mut chosen = join.chosen;
-    if join.cuts.value2.len() <= options.rows_max as usize
-        && let Some(solved) = solver::solve(graph, &join.cuts, gap2, options.nodes_max)
-    {
-        (balance.rows, balance.columns) = (solved.rows, solved.columns);
-        balance.claimed = Some((base as f64 + solved.claimed) * COST_UNIT);
-        balance.branched = solved.branched;
-        let sound = |other: &Vec<bool>| {
-            weight(graph, other) <= weight(graph, &chosen) && makes_even(graph, other)
-        };
-        chosen = solved.chosen.filter(sound).unwrap_or(chosen);
-    }
-    let even = programme.counts(&chosen);
+    let even = programme.counts(&join.chosen);
     let optimum = total_units(goals, &even);
     let bound = base + (join.cuts.bound2() + 1) / 2;
     balance.base = base as f64 * COST_UNIT;
@@ -251,6 +246,29 @@ pub fn minimum_join(graph: &Graph, events_max: u64) -> Join {
         cuts,
         events,
     }
+}
+
+/// The same as HiGHS solves it from there: its choice, if that is even and no dearer. `base` is what
+/// is decided outside, for what it claims.
+pub fn solved_join(graph: &Graph, base: i64, options: &Options) -> (Join, Solved) {
+    let mut join = minimum_join(graph, options.events_max);
+    let gap2 = 2 * join.weight(graph) - join.cuts.bound2();
+    let limits = solver::Limits {
+        rows_max: options.rows_max,
+        nodes_max: options.nodes_max,
+    };
+    let (taken, mut solved) = solver::solve(graph, &join.cuts, &join.chosen, gap2, limits);
+    solved.claimed = (solved.claimed).map(|claimed| (base as f64 + claimed) * COST_UNIT);
+    if let Some(chosen) = join::within(graph, &join.cuts, &taken)
+        && weight(graph, &chosen) <= join.weight(graph)
+    {
+        join.chosen = chosen;
+    }
+    assert!(
+        makes_even(graph, &join.chosen),
+        "a T-join leaves no odd node"
+    );
+    (join, solved)
 }
 
 fn weight(graph: &Graph, chosen: &[bool]) -> i64 {

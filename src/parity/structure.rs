@@ -3,11 +3,13 @@
 //! Lagrangian relaxation: multipliers make the rules of the patterns a part of the costs (`tilts`),
 //! a T-join solves what is left exactly, and bounds cost and price of any counts. The multipliers
 //! start at those that are best without parity (`relaxation`), then climb: in each round towards the rules
-//! that the T-join's counts break. Its counts, mended by moves of two, are candidates; HiGHS may improve
-//! the best of them neighbourhood by neighbourhood.
+//! that the T-join's counts break. Its counts, mended by moves of two, are candidates. At the best multipliers
+//! HiGHS solves the programme, whose optimum is the bound; and it may improve the best candidate neighbourhood
+//! by neighbourhood.
 
 use crate::intervals::goals::Goals;
 use crate::parity::Options;
+use crate::parity::balance::Solved;
 use crate::parity::balance::Structure;
 use crate::parity::cuts::Cuts;
 use crate::parity::draft::Draft;
@@ -20,6 +22,7 @@ use crate::parity::programme::COST_UNIT;
 use crate::parity::programme::Programme;
 use crate::parity::programme::units;
 use crate::parity::relaxation::Start;
+use crate::parity::solved_join;
 use crate::parity::tilts::Rules;
 use crate::parity::tilts::Tilts;
 use crate::partition::subdomains::Partition;
@@ -83,6 +86,7 @@ pub fn fit_patterns(
             .proof
             .take()
             .expect("the first round proves something");
+        made.solved = climb.solve(&proof)?;
         best = climb.best;
         made.rounds = climb.rounds;
         let left = (best.total() - proof.bound) as f64;
@@ -119,7 +123,7 @@ struct Climb<'a> {
     rounds: u32,
 }
 
-impl Climb<'_> {
+impl<'a> Climb<'a> {
     fn run(&mut self) -> Result<(), Error> {
         let rows = self.rules.start[self.goals.blocks.len()] as usize;
         let start = Start::of(self.goals, self.rules, self.worth);
@@ -175,12 +179,9 @@ impl Climb<'_> {
         let join = minimum_join(&programme.graph, self.options.events_max);
         let bound = programme.base + (join.cuts.bound2() + 1) / 2;
         let counts = programme.counts(&join.chosen);
-        let mut draft = self.best.with_counts(counts);
+        let draft = self.best.with_counts(counts);
         let slope = self.slope(&draft);
-        draft.descend(MEND_ROUNDS);
-        if draft.total() < self.best.total() {
-            self.best = draft;
-        }
+        self.consider(draft);
         let raised = self.proof.as_ref().is_none_or(|proof| bound > proof.bound);
         if raised {
             self.proof = Some(Proof {
@@ -190,6 +191,23 @@ impl Climb<'_> {
             });
         }
         Ok((bound, raised, slope))
+    }
+
+    /// HiGHS solves the programme at the multipliers of the proof; its counts are one more candidate.
+    fn solve(&mut self, proof: &Proof) -> Result<Solved, Error> {
+        let tilts = Tilts::of(self.goals, self.rules, &proof.multipliers, self.worth);
+        let programme = Programme::new(self.partition, self.goals, Some(&tilts))?;
+        let (join, solved) = solved_join(&programme.graph, programme.base, self.options);
+        self.consider(self.best.with_counts(programme.counts(&join.chosen)));
+        Ok(solved)
+    }
+
+    /// Takes what mended counts are the best.
+    fn consider(&mut self, mut draft: Draft<'a>) {
+        draft.descend(MEND_ROUNDS);
+        if draft.total() < self.best.total() {
+            self.best = draft;
+        }
     }
 
     /// How the bound changes with each multiplier: the excess of its rule, less the bridge it saves.

@@ -43,6 +43,9 @@ pub fn rows(mesh: &Mesh) -> Vec<[String; 2]> {
         ),
         row("cost of the counts", cost(proof.objective)),
     ];
+    if let Some(claimed) = proof.claimed {
+        rows.push(row("the bound as HiGHS claims it", format!("{claimed:.3}")));
+    }
     let Some(patterns) = &frame.patterns else {
         let gap = share(proof.objective - proof.bound, proof.objective - proof.base);
         rows.push(row("gap", gap));

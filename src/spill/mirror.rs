@@ -12,6 +12,7 @@ use crate::intervals::goals::Goals;
 use crate::noding::arrangement::Arrangement;
 use crate::noding::arrangement::Piece;
 use crate::parity::balance::Balance;
+use crate::parity::balance::Solved;
 use crate::parity::balance::Structure;
 use crate::parity::cuts::Cuts;
 use crate::partition::subdomains::Curve;
@@ -56,11 +57,16 @@ struct StructureRow {
     numbers: [u32; 5],
     /// Worth, price, bound.
     costs: [f64; 3],
+    solved: SolvedRow,
     multipliers: Vec<i64>,
     parent: Vec<u32>,
     value2: Vec<i64>,
     set_of: Vec<u32>,
 }
+
+/// Parts, left, rows, columns, added, branched; claimed.
+#[derive(Encode, Decode)]
+struct SolvedRow([u32; 6], Option<f64>);
 
 #[derive(Encode, Decode)]
 struct BalanceRow {
@@ -70,10 +76,7 @@ struct BalanceRow {
     proven: bool,
     odd_share: f64,
     odd_subdomains: u32,
-    rows: u32,
-    columns: u32,
-    claimed: Option<f64>,
-    branched: bool,
+    solved: SolvedRow,
     events: u64,
     parent: Vec<u32>,
     value2: Vec<i64>,
@@ -244,6 +247,33 @@ fn partition(curves: Vec<CurveRow>, subdomains: Vec<(Vec<Vec<u32>>, f64)>) -> Pa
     }
 }
 
+impl SolvedRow {
+    fn of(it: &Solved) -> SolvedRow {
+        let numbers = [
+            it.parts,
+            it.left,
+            it.rows,
+            it.columns,
+            it.added,
+            it.branched,
+        ];
+        SolvedRow(numbers, it.claimed)
+    }
+
+    fn into_solved(self) -> Solved {
+        let [parts, left, rows, columns, added, branched] = self.0;
+        Solved {
+            parts,
+            left,
+            rows,
+            columns,
+            added,
+            branched,
+            claimed: self.1,
+        }
+    }
+}
+
 impl StructureRow {
     fn of(it: &Structure) -> StructureRow {
         StructureRow {
@@ -255,6 +285,7 @@ impl StructureRow {
                 it.improved,
             ],
             costs: [it.worth, it.price, it.bound],
+            solved: SolvedRow::of(&it.solved),
             multipliers: it.multipliers.clone(),
             parent: it.cuts.parent.clone(),
             value2: it.cuts.value2.clone(),
@@ -274,6 +305,7 @@ impl StructureRow {
             bound,
             rounds,
             improved,
+            solved: self.solved.into_solved(),
             multipliers: self.multipliers,
             cuts: Cuts {
                 parent: self.parent,
@@ -293,10 +325,7 @@ impl BalanceRow {
             proven: it.proven,
             odd_share: it.odd_share,
             odd_subdomains: it.odd_subdomains,
-            rows: it.rows,
-            columns: it.columns,
-            claimed: it.claimed,
-            branched: it.branched,
+            solved: SolvedRow::of(&it.solved),
             events: it.events,
             parent: it.cuts.parent.clone(),
             value2: it.cuts.value2.clone(),
@@ -316,10 +345,7 @@ impl BalanceRow {
             structure: self.structure.into_structure(),
             odd_share: self.odd_share,
             odd_subdomains: self.odd_subdomains,
-            rows: self.rows,
-            columns: self.columns,
-            claimed: self.claimed,
-            branched: self.branched,
+            solved: self.solved.into_solved(),
             events: self.events,
             cuts: Cuts {
                 parent: self.parent,

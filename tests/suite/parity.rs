@@ -21,7 +21,7 @@ use proptest::prelude::*;
 const OPTIONS: Options = Options {
     events_max: u64::MAX,
     nodes_max: 100,
-    rows_max: 20_000,
+    rows_max: 50_000,
     worth: 0.0,
     rounds_max: 20,
     climb_max: 60,
@@ -424,6 +424,58 @@ fn joins_of_middle_size_are_those_of_a_table_of_pairs() {
     }
 }
 
+/// The matching stopped before it began: HiGHS gets no row and a bad start, finds the rows by itself and
+/// branches where those that it finds are not enough.
+#[test]
+fn highs_finds_the_same_without_the_matching() {
+    let options = Options {
+        events_max: 0,
+        nodes_max: 10_000,
+        ..OPTIONS
+    };
+    let mut dice = Dice(31);
+    let (mut added, mut branched) = (0, 0);
+    for round in 0..400 {
+        let nodes = 4 + dice.below(40);
+        let edges = nodes + dice.below(nodes);
+        let mut graph = random_graph(&mut dice, nodes, edges, [4, 50, 100_000][round % 3]);
+        let odd: Vec<usize> = (0..nodes).filter(|&v| graph.odd[v]).collect();
+        odd.iter().skip(12).for_each(|&v| graph.odd[v] = false);
+        let Some(least) = least_pairing(&graph) else {
+            continue;
+        };
+        let (join, solved) = parity::solved_join(&graph, 0, &options);
+        assert_eq!(join.weight(&graph), least, "round {round}: {solved:?}");
+        let claimed = solved.claimed.expect("no part is left") / COST_UNIT;
+        assert!(claimed <= least as f64 + 0.5, "round {round}: {claimed}");
+        added += solved.added;
+        branched += solved.branched;
+    }
+    assert!(
+        added > 1000 && branched > 0,
+        "{added} rows, {branched} branched"
+    );
+}
+
+/// With the matching's rows there is next to nothing left to add.
+#[test]
+fn highs_confirms_what_the_matching_proves() {
+    for seed in 0..20 {
+        let (p, g) = city(20, seed);
+        let options = Options {
+            worth: 0.3,
+            ..OPTIONS
+        };
+        let made = parity::balance(&p, &g, &options).unwrap();
+        check(&p, &g, &made).unwrap();
+        assert!(made.proven);
+        let said = &made.solved;
+        let claimed = said.claimed.expect("no part is left");
+        assert!((claimed - made.bound).abs() < 1e-6, "{said:?}");
+        assert!(said.rows > 100 && said.added * 20 <= said.rows, "{said:?}");
+    }
+}
+
 /// How many sub-domains each one is away from `from`, over curves.
 fn steps_from(partition: &Partition, from: u32) -> Vec<u32> {
     let mut steps = vec![u32::MAX; partition.subdomains.len()];
@@ -710,7 +762,7 @@ fn ten_thousand_blocks_are_proven() {
     let made = balanced(&p, &g);
     assert!(made.proven, "gap {}", made.gap());
     assert!((0.3..0.7).contains(&made.odd_share), "{}", made.odd_share);
-    let claimed = made.claimed.expect("HiGHS solves it");
+    let claimed = made.solved.claimed.expect("HiGHS solves it");
     assert!(
         (claimed - made.objective).abs() < 1e-6 * made.objective,
         "{claimed}"
