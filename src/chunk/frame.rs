@@ -4,6 +4,7 @@ use crate::geometry::point::Xy;
 use crate::intervals::goals::Goals;
 use crate::noding::arrangement::Piece;
 use crate::parity::balance::Balance;
+use crate::parity::balance::Solved;
 use crate::parity::balance::Structure;
 use crate::parity::programme::COST_UNIT;
 use crate::parity::programme::units;
@@ -21,8 +22,8 @@ pub struct Certificate {
     pub base: i64,
     /// Lower bound of the cost of any counts that make every sub-domain even.
     pub bound: i64,
-    /// The optimum that HiGHS claims, if it was asked; as a cost, not in units.
-    pub claimed: Option<f64>,
+    /// What HiGHS solved; costs are not in units.
+    pub solved: Solved,
     /// Odd set -> the next larger set around it, or `u32::MAX`; parents precede children.
     pub set_parent: Vec<u32>,
     /// Odd set -> twice its dual, positive.
@@ -39,7 +40,7 @@ impl From<Balance> for Certificate {
             objective: units(balance.objective),
             base: units(balance.base),
             bound: units(balance.bound),
-            claimed: balance.solved.claimed,
+            solved: balance.solved,
             set_parent: balance.cuts.parent,
             set_dual2: balance.cuts.value2,
             set_of: balance.cuts.set_of,
@@ -56,6 +57,12 @@ pub struct Patterns {
     pub price: i64,
     /// Lower bound of cost and price of any even counts, cost units.
     pub bound: i64,
+    /// What HiGHS solved of the programme that the multipliers tilt.
+    pub solved: Solved,
+    /// T-joins that the multipliers took.
+    pub rounds: u32,
+    /// Neighbourhoods that HiGHS found better counts for.
+    pub improved: u32,
     /// A multiplier for each rule of each block, cost units.
     pub multipliers: Vec<i64>,
     /// Odd set -> the next larger set around it, or `u32::MAX`; parents precede children.
@@ -73,6 +80,9 @@ impl Patterns {
             worth: units(made.worth),
             price: units(made.price),
             bound: units(made.bound),
+            solved: made.solved,
+            rounds: made.rounds,
+            improved: made.improved,
             multipliers: made.multipliers.clone(),
             set_parent: made.cuts.parent.clone(),
             set_dual2: made.cuts.value2.clone(),

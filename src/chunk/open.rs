@@ -15,6 +15,7 @@ use crate::chunk::views::IndexView;
 use crate::chunk::views::LinesView;
 use crate::chunk::views::PatternsView;
 use crate::geometry::grid::Grid;
+use crate::parity::balance::Solved;
 use flatbuffers::Follow;
 use flatbuffers::Vector;
 use flatbuffers::Verifiable;
@@ -219,7 +220,7 @@ fn frame_view<'a>(table: &frame_file::Frame<'a>) -> FrameView<'a> {
             objective: it.objective(),
             base: it.base(),
             bound: it.bound(),
-            claimed: (!it.claimed().is_nan()).then(|| it.claimed()),
+            solved: solved(it.solved(), it.claimed()),
             set_parent: slice(it.set_parent()),
             set_dual2: slice(it.set_dual2()),
             set_of: slice(it.set_of()),
@@ -228,6 +229,9 @@ fn frame_view<'a>(table: &frame_file::Frame<'a>) -> FrameView<'a> {
             worth: it.worth(),
             price: it.price(),
             bound: it.bound(),
+            solved: solved(it.solved(), it.claimed()),
+            rounds: it.rounds(),
+            improved: it.improved(),
             block_subdomain: slice(it.block_subdomain()),
             block_start: slice(it.block_start()),
             side_start: slice(it.side_start()),
@@ -237,6 +241,19 @@ fn frame_view<'a>(table: &frame_file::Frame<'a>) -> FrameView<'a> {
             set_dual2: slice(it.set_dual2()),
             set_of: slice(it.set_of()),
         }),
+    }
+}
+
+fn solved(given: Option<&frame_file::Solved>, claimed: f64) -> Solved {
+    let number = |of: fn(&frame_file::Solved) -> u32| given.map_or(0, of);
+    Solved {
+        parts: number(frame_file::Solved::parts),
+        left: number(frame_file::Solved::left),
+        rows: number(frame_file::Solved::rows),
+        columns: number(frame_file::Solved::columns),
+        added: number(frame_file::Solved::added),
+        branched: number(frame_file::Solved::branched),
+        claimed: (!claimed.is_nan()).then_some(claimed),
     }
 }
 

@@ -7,6 +7,7 @@
 use crate::geometry::grid::Grid;
 use crate::geometry::point::Point;
 use crate::geometry::point::Xy;
+use crate::parity::balance::Solved;
 use crate::partition::subdomains::HalfCurve;
 use std::ops::Range;
 
@@ -73,8 +74,8 @@ pub struct CertificateView<'a> {
     pub base: i64,
     /// Lower bound, as claimed.
     pub bound: i64,
-    /// The optimum that HiGHS claims.
-    pub claimed: Option<f64>,
+    /// What HiGHS solved.
+    pub solved: Solved,
     /// Odd set -> the next larger set around it, or `u32::MAX`.
     pub set_parent: &'a [u32],
     /// Odd set -> twice its dual.
@@ -92,6 +93,12 @@ pub struct PatternsView<'a> {
     pub price: i64,
     /// Lower bound, as claimed.
     pub bound: i64,
+    /// What HiGHS solved.
+    pub solved: Solved,
+    /// T-joins that the multipliers took.
+    pub rounds: u32,
+    /// Neighbourhoods that HiGHS found better counts for.
+    pub improved: u32,
     /// Block -> its sub-domain.
     pub block_subdomain: &'a [u32],
     /// Block -> sides, CSR; rules and multipliers alike.

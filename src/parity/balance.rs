@@ -40,7 +40,7 @@ pub struct Balance {
 }
 
 /// What HiGHS says of one programme; it comes beside the proof, and is no part of it.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Solved {
     /// Parts that share no sub-domain, curve or row, small ones counted together.
     pub parts: u32,

@@ -402,7 +402,7 @@ pub fn parity_options(match_sides: f64) -> parity::Options {
     parity::Options {
         events_max: 1 << 31,
         nodes_max: 1000,
-        rows_max: 50_000,
+        rows_max: 60_000,
         worth: match_sides,
         rounds_max: 20,
         climb_max: 8,

@@ -163,7 +163,7 @@ fn tiny_frame() -> Frame {
         objective: units(2),
         base: units(1),
         bound: units(2),
-        claimed: None,
+        solved: polder::parity::balance::Solved::default(),
         set_parent: vec![u32::MAX],
         set_dual2: vec![2 * (units(2) - units(1))],
         set_of: vec![0, u32::MAX],
@@ -335,8 +335,8 @@ fn what_is_written_is_what_is_read() {
     let wanted = tiny.frame.certificate.unwrap();
     let read = frame.certificate.unwrap();
     assert_eq!(
-        (read.objective, read.bound, read.claimed),
-        (wanted.objective, wanted.bound, None)
+        (read.objective, read.bound, &read.solved),
+        (wanted.objective, wanted.bound, &wanted.solved)
     );
     assert_eq!(
         (read.set_dual2, read.set_of),

@@ -21,7 +21,7 @@ use proptest::prelude::*;
 const OPTIONS: Options = Options {
     events_max: u64::MAX,
     nodes_max: 100,
-    rows_max: 50_000,
+    rows_max: 60_000,
     worth: 0.0,
     rounds_max: 20,
     climb_max: 60,

@@ -12,6 +12,7 @@ use crate::chunk::frame::Patterns;
 use crate::chunk::generated::frame as frame_file;
 use crate::chunk::writer::Place;
 use crate::intervals::goals::Block;
+use crate::parity::balance::Solved;
 use crate::partition::subdomains::OUTSIDE;
 use flatbuffers::WIPOffset;
 use std::path::Path;
@@ -20,6 +21,17 @@ use std::path::Path;
 const SEAM: u8 = 1;
 /// Flag of a curve with the outside on one side.
 const RIM: u8 = 2;
+
+fn solved(given: &Solved) -> frame_file::Solved {
+    frame_file::Solved::new(
+        given.parts,
+        given.left,
+        given.rows,
+        given.columns,
+        given.added,
+        given.branched,
+    )
+}
 
 fn certificate<'a>(
     builder: &mut Builder<'a>,
@@ -30,10 +42,11 @@ fn certificate<'a>(
         objective: given.objective,
         base: given.base,
         bound: given.bound,
-        claimed: given.claimed.unwrap_or(f64::NAN),
+        claimed: given.solved.claimed.unwrap_or(f64::NAN),
         set_parent: Some(builder.create_vector(&given.set_parent)),
         set_dual2: Some(builder.create_vector(&given.set_dual2)),
         set_of: Some(builder.create_vector(&given.set_of)),
+        solved: Some(&solved(&given.solved)),
     };
     frame_file::Certificate::create(builder, &args)
 }
@@ -59,6 +72,10 @@ fn patterns<'a>(
         set_parent: Some(builder.create_vector(&given.set_parent)),
         set_dual2: Some(builder.create_vector(&given.set_dual2)),
         set_of: Some(builder.create_vector(&given.set_of)),
+        solved: Some(&solved(&given.solved)),
+        claimed: given.solved.claimed.unwrap_or(f64::NAN),
+        rounds: given.rounds,
+        improved: given.improved,
     };
     frame_file::Patterns::create(builder, &args)
 }

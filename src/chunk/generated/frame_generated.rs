@@ -3,14 +3,276 @@
 extern crate alloc;
 
 
-pub enum CertificateOffset {}
-#[derive(Copy, Clone, PartialEq)]
-
 /// Proof of how good the interval counts are, in whole cost units. The cheapest counts leave some
 /// sub-domains odd; changing the parity of a curve costs extra. Take a set with an odd number of odd
 /// sub-domains: some curve with exactly one side in it must change. If each set pays its dual and
 /// no curve is paid more than its change costs, half the sum of the duals is a lower bound on what
 /// all changes cost (Edmonds and Johnson 1973). The sets are nested or disjoint.
+/// What HiGHS solved of a programme; it comes beside the proof, and is no part of it.
+// struct Solved, aligned to 4
+#[repr(transparent)]
+#[derive(Clone, Copy, PartialEq)]
+pub struct Solved(pub [u8; 24]);
+impl Default for Solved { 
+  fn default() -> Self { 
+    Self([0; 24])
+  }
+}
+impl ::core::fmt::Debug for Solved {
+  fn fmt(&self, f: &mut ::core::fmt::Formatter) -> ::core::fmt::Result {
+    f.debug_struct("Solved")
+      .field("parts", &self.parts())
+      .field("left", &self.left())
+      .field("rows", &self.rows())
+      .field("columns", &self.columns())
+      .field("added", &self.added())
+      .field("branched", &self.branched())
+      .finish()
+  }
+}
+
+impl ::flatbuffers::SimpleToVerifyInSlice for Solved {}
+impl<'a> ::flatbuffers::Follow<'a> for Solved {
+  type Inner = &'a Solved;
+  #[inline]
+  unsafe fn follow(buf: &'a [u8], loc: usize) -> Self::Inner {
+    unsafe { <&'a Solved>::follow(buf, loc) }
+  }
+}
+impl<'a> ::flatbuffers::Follow<'a> for &'a Solved {
+  type Inner = &'a Solved;
+  #[inline]
+  unsafe fn follow(buf: &'a [u8], loc: usize) -> Self::Inner {
+    unsafe { ::flatbuffers::follow_cast_ref::<Solved>(buf, loc) }
+  }
+}
+impl<'b> ::flatbuffers::Push for Solved {
+    type Output = Solved;
+    #[inline]
+    unsafe fn push(&self, dst: &mut [u8], _written_len: usize) {
+        let src = unsafe { ::core::slice::from_raw_parts(self as *const Solved as *const u8, <Self as ::flatbuffers::Push>::size()) };
+        dst.copy_from_slice(src);
+    }
+    #[inline]
+    fn alignment() -> ::flatbuffers::PushAlignment {
+        ::flatbuffers::PushAlignment::new(4)
+    }
+}
+
+impl<'a> ::flatbuffers::Verifiable for Solved {
+  #[inline]
+  fn run_verifier(
+    v: &mut ::flatbuffers::Verifier, pos: usize
+  ) -> Result<(), ::flatbuffers::InvalidFlatbuffer> {
+    v.in_buffer::<Self>(pos)
+  }
+}
+
+impl<'a> Solved {
+  #[allow(clippy::too_many_arguments)]
+  pub fn new(
+    parts: u32,
+    left: u32,
+    rows: u32,
+    columns: u32,
+    added: u32,
+    branched: u32,
+  ) -> Self {
+    let mut s = Self([0; 24]);
+    s.set_parts(parts);
+    s.set_left(left);
+    s.set_rows(rows);
+    s.set_columns(columns);
+    s.set_added(added);
+    s.set_branched(branched);
+    s
+  }
+
+  /// Parts that share no sub-domain, curve or row, small ones counted together.
+  pub fn parts(&self) -> u32 {
+    let mut mem = ::core::mem::MaybeUninit::<<u32 as ::flatbuffers::EndianScalar>::Scalar>::uninit();
+    // Safety:
+    // Created from a valid Table for this object
+    // Which contains a valid value in this slot
+    ::flatbuffers::EndianScalar::from_little_endian(unsafe {
+      ::core::ptr::copy_nonoverlapping(
+        self.0[0..].as_ptr(),
+        mem.as_mut_ptr() as *mut u8,
+        ::core::mem::size_of::<<u32 as ::flatbuffers::EndianScalar>::Scalar>(),
+      );
+      mem.assume_init()
+    })
+  }
+
+  pub fn set_parts(&mut self, x: u32) {
+    let x_le = ::flatbuffers::EndianScalar::to_little_endian(x);
+    // Safety:
+    // Created from a valid Table for this object
+    // Which contains a valid value in this slot
+    unsafe {
+      ::core::ptr::copy_nonoverlapping(
+        &x_le as *const _ as *const u8,
+        self.0[0..].as_mut_ptr(),
+        ::core::mem::size_of::<<u32 as ::flatbuffers::EndianScalar>::Scalar>(),
+      );
+    }
+  }
+
+  /// Parts left at the matching's choice.
+  pub fn left(&self) -> u32 {
+    let mut mem = ::core::mem::MaybeUninit::<<u32 as ::flatbuffers::EndianScalar>::Scalar>::uninit();
+    // Safety:
+    // Created from a valid Table for this object
+    // Which contains a valid value in this slot
+    ::flatbuffers::EndianScalar::from_little_endian(unsafe {
+      ::core::ptr::copy_nonoverlapping(
+        self.0[4..].as_ptr(),
+        mem.as_mut_ptr() as *mut u8,
+        ::core::mem::size_of::<<u32 as ::flatbuffers::EndianScalar>::Scalar>(),
+      );
+      mem.assume_init()
+    })
+  }
+
+  pub fn set_left(&mut self, x: u32) {
+    let x_le = ::flatbuffers::EndianScalar::to_little_endian(x);
+    // Safety:
+    // Created from a valid Table for this object
+    // Which contains a valid value in this slot
+    unsafe {
+      ::core::ptr::copy_nonoverlapping(
+        &x_le as *const _ as *const u8,
+        self.0[4..].as_mut_ptr(),
+        ::core::mem::size_of::<<u32 as ::flatbuffers::EndianScalar>::Scalar>(),
+      );
+    }
+  }
+
+  /// Rows of the parts that were solved, those added apart.
+  pub fn rows(&self) -> u32 {
+    let mut mem = ::core::mem::MaybeUninit::<<u32 as ::flatbuffers::EndianScalar>::Scalar>::uninit();
+    // Safety:
+    // Created from a valid Table for this object
+    // Which contains a valid value in this slot
+    ::flatbuffers::EndianScalar::from_little_endian(unsafe {
+      ::core::ptr::copy_nonoverlapping(
+        self.0[8..].as_ptr(),
+        mem.as_mut_ptr() as *mut u8,
+        ::core::mem::size_of::<<u32 as ::flatbuffers::EndianScalar>::Scalar>(),
+      );
+      mem.assume_init()
+    })
+  }
+
+  pub fn set_rows(&mut self, x: u32) {
+    let x_le = ::flatbuffers::EndianScalar::to_little_endian(x);
+    // Safety:
+    // Created from a valid Table for this object
+    // Which contains a valid value in this slot
+    unsafe {
+      ::core::ptr::copy_nonoverlapping(
+        &x_le as *const _ as *const u8,
+        self.0[8..].as_mut_ptr(),
+        ::core::mem::size_of::<<u32 as ::flatbuffers::EndianScalar>::Scalar>(),
+      );
+    }
+  }
+
+  /// Columns of them.
+  pub fn columns(&self) -> u32 {
+    let mut mem = ::core::mem::MaybeUninit::<<u32 as ::flatbuffers::EndianScalar>::Scalar>::uninit();
+    // Safety:
+    // Created from a valid Table for this object
+    // Which contains a valid value in this slot
+    ::flatbuffers::EndianScalar::from_little_endian(unsafe {
+      ::core::ptr::copy_nonoverlapping(
+        self.0[12..].as_ptr(),
+        mem.as_mut_ptr() as *mut u8,
+        ::core::mem::size_of::<<u32 as ::flatbuffers::EndianScalar>::Scalar>(),
+      );
+      mem.assume_init()
+    })
+  }
+
+  pub fn set_columns(&mut self, x: u32) {
+    let x_le = ::flatbuffers::EndianScalar::to_little_endian(x);
+    // Safety:
+    // Created from a valid Table for this object
+    // Which contains a valid value in this slot
+    unsafe {
+      ::core::ptr::copy_nonoverlapping(
+        &x_le as *const _ as *const u8,
+        self.0[12..].as_mut_ptr(),
+        ::core::mem::size_of::<<u32 as ::flatbuffers::EndianScalar>::Scalar>(),
+      );
+    }
+  }
+
+  /// Rows that its own solutions called for.
+  pub fn added(&self) -> u32 {
+    let mut mem = ::core::mem::MaybeUninit::<<u32 as ::flatbuffers::EndianScalar>::Scalar>::uninit();
+    // Safety:
+    // Created from a valid Table for this object
+    // Which contains a valid value in this slot
+    ::flatbuffers::EndianScalar::from_little_endian(unsafe {
+      ::core::ptr::copy_nonoverlapping(
+        self.0[16..].as_ptr(),
+        mem.as_mut_ptr() as *mut u8,
+        ::core::mem::size_of::<<u32 as ::flatbuffers::EndianScalar>::Scalar>(),
+      );
+      mem.assume_init()
+    })
+  }
+
+  pub fn set_added(&mut self, x: u32) {
+    let x_le = ::flatbuffers::EndianScalar::to_little_endian(x);
+    // Safety:
+    // Created from a valid Table for this object
+    // Which contains a valid value in this slot
+    unsafe {
+      ::core::ptr::copy_nonoverlapping(
+        &x_le as *const _ as *const u8,
+        self.0[16..].as_mut_ptr(),
+        ::core::mem::size_of::<<u32 as ::flatbuffers::EndianScalar>::Scalar>(),
+      );
+    }
+  }
+
+  /// Parts that had to be branched on.
+  pub fn branched(&self) -> u32 {
+    let mut mem = ::core::mem::MaybeUninit::<<u32 as ::flatbuffers::EndianScalar>::Scalar>::uninit();
+    // Safety:
+    // Created from a valid Table for this object
+    // Which contains a valid value in this slot
+    ::flatbuffers::EndianScalar::from_little_endian(unsafe {
+      ::core::ptr::copy_nonoverlapping(
+        self.0[20..].as_ptr(),
+        mem.as_mut_ptr() as *mut u8,
+        ::core::mem::size_of::<<u32 as ::flatbuffers::EndianScalar>::Scalar>(),
+      );
+      mem.assume_init()
+    })
+  }
+
+  pub fn set_branched(&mut self, x: u32) {
+    let x_le = ::flatbuffers::EndianScalar::to_little_endian(x);
+    // Safety:
+    // Created from a valid Table for this object
+    // Which contains a valid value in this slot
+    unsafe {
+      ::core::ptr::copy_nonoverlapping(
+        &x_le as *const _ as *const u8,
+        self.0[20..].as_mut_ptr(),
+        ::core::mem::size_of::<<u32 as ::flatbuffers::EndianScalar>::Scalar>(),
+      );
+    }
+  }
+
+}
+
+pub enum CertificateOffset {}
+#[derive(Copy, Clone, PartialEq)]
+
 pub struct Certificate<'a> {
   pub _tab: ::flatbuffers::Table<'a>,
 }
@@ -32,6 +294,7 @@ impl<'a> Certificate<'a> {
   pub const VT_SET_PARENT: ::flatbuffers::VOffsetT = 14;
   pub const VT_SET_DUAL2: ::flatbuffers::VOffsetT = 16;
   pub const VT_SET_OF: ::flatbuffers::VOffsetT = 18;
+  pub const VT_SOLVED: ::flatbuffers::VOffsetT = 20;
 
   #[inline]
   pub unsafe fn init_from_table(table: ::flatbuffers::Table<'a>) -> Self {
@@ -48,6 +311,7 @@ impl<'a> Certificate<'a> {
     builder.add_base(args.base);
     builder.add_objective(args.objective);
     builder.add_cost_unit(args.cost_unit);
+    if let Some(x) = args.solved { builder.add_solved(x); }
     if let Some(x) = args.set_of { builder.add_set_of(x); }
     if let Some(x) = args.set_dual2 { builder.add_set_dual2(x); }
     if let Some(x) = args.set_parent { builder.add_set_parent(x); }
@@ -119,6 +383,14 @@ impl<'a> Certificate<'a> {
     // which contains a valid value in this slot
     unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, u32>>>(Certificate::VT_SET_OF, None).unwrap()}
   }
+  /// What HiGHS solved.
+  #[inline]
+  pub fn solved(&self) -> Option<&'a Solved> {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<Solved>(Certificate::VT_SOLVED, None)}
+  }
 }
 
 impl ::flatbuffers::Verifiable for Certificate<'_> {
@@ -135,6 +407,7 @@ impl ::flatbuffers::Verifiable for Certificate<'_> {
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u32>>>("set_parent", Self::VT_SET_PARENT, true)?
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, i64>>>("set_dual2", Self::VT_SET_DUAL2, true)?
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u32>>>("set_of", Self::VT_SET_OF, true)?
+     .visit_field::<Solved>("solved", Self::VT_SOLVED, false)?
      .finish();
     Ok(())
   }
@@ -148,6 +421,7 @@ pub struct CertificateArgs<'a> {
     pub set_parent: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u32>>>,
     pub set_dual2: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, i64>>>,
     pub set_of: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u32>>>,
+    pub solved: Option<&'a Solved>,
 }
 impl<'a> Default for CertificateArgs<'a> {
   #[inline]
@@ -161,6 +435,7 @@ impl<'a> Default for CertificateArgs<'a> {
       set_parent: None, // required field
       set_dual2: None, // required field
       set_of: None, // required field
+      solved: None,
     }
   }
 }
@@ -203,6 +478,10 @@ impl<'a: 'b, 'b, A: ::flatbuffers::Allocator + 'a> CertificateBuilder<'a, 'b, A>
     self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Certificate::VT_SET_OF, set_of);
   }
   #[inline]
+  pub fn add_solved(&mut self, solved: &Solved) {
+    self.fbb_.push_slot_always::<&Solved>(Certificate::VT_SOLVED, solved);
+  }
+  #[inline]
   pub fn new(_fbb: &'b mut ::flatbuffers::FlatBufferBuilder<'a, A>) -> CertificateBuilder<'a, 'b, A> {
     let start = _fbb.start_table();
     CertificateBuilder {
@@ -231,6 +510,7 @@ impl ::core::fmt::Debug for Certificate<'_> {
       ds.field("set_parent", &self.set_parent());
       ds.field("set_dual2", &self.set_dual2());
       ds.field("set_of", &self.set_of());
+      ds.field("solved", &self.solved());
       ds.finish()
   }
 }
@@ -267,6 +547,10 @@ impl<'a> Patterns<'a> {
   pub const VT_SET_PARENT: ::flatbuffers::VOffsetT = 20;
   pub const VT_SET_DUAL2: ::flatbuffers::VOffsetT = 22;
   pub const VT_SET_OF: ::flatbuffers::VOffsetT = 24;
+  pub const VT_SOLVED: ::flatbuffers::VOffsetT = 26;
+  pub const VT_CLAIMED: ::flatbuffers::VOffsetT = 28;
+  pub const VT_ROUNDS: ::flatbuffers::VOffsetT = 30;
+  pub const VT_IMPROVED: ::flatbuffers::VOffsetT = 32;
 
   #[inline]
   pub unsafe fn init_from_table(table: ::flatbuffers::Table<'a>) -> Self {
@@ -278,9 +562,13 @@ impl<'a> Patterns<'a> {
     args: &'args PatternsArgs<'args>
   ) -> ::flatbuffers::WIPOffset<Patterns<'bldr>> {
     let mut builder = PatternsBuilder::new(_fbb);
+    builder.add_claimed(args.claimed);
     builder.add_bound(args.bound);
     builder.add_price(args.price);
     builder.add_worth(args.worth);
+    builder.add_improved(args.improved);
+    builder.add_rounds(args.rounds);
+    if let Some(x) = args.solved { builder.add_solved(x); }
     if let Some(x) = args.set_of { builder.add_set_of(x); }
     if let Some(x) = args.set_dual2 { builder.add_set_dual2(x); }
     if let Some(x) = args.set_parent { builder.add_set_parent(x); }
@@ -379,6 +667,38 @@ impl<'a> Patterns<'a> {
     // which contains a valid value in this slot
     unsafe { self._tab.get::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'a, u32>>>(Patterns::VT_SET_OF, None).unwrap()}
   }
+  /// What HiGHS solved of the programme that the multipliers tilt, and the optimum that it claims,
+  /// units of cost; NaN if a part was left.
+  #[inline]
+  pub fn solved(&self) -> Option<&'a Solved> {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<Solved>(Patterns::VT_SOLVED, None)}
+  }
+  #[inline]
+  pub fn claimed(&self) -> f64 {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<f64>(Patterns::VT_CLAIMED, Some(f64::NAN)).unwrap()}
+  }
+  /// T-joins that the multipliers took.
+  #[inline]
+  pub fn rounds(&self) -> u32 {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<u32>(Patterns::VT_ROUNDS, Some(0)).unwrap()}
+  }
+  /// Neighbourhoods that HiGHS found better counts for.
+  #[inline]
+  pub fn improved(&self) -> u32 {
+    // Safety:
+    // Created from valid Table for this object
+    // which contains a valid value in this slot
+    unsafe { self._tab.get::<u32>(Patterns::VT_IMPROVED, Some(0)).unwrap()}
+  }
 }
 
 impl ::flatbuffers::Verifiable for Patterns<'_> {
@@ -398,6 +718,10 @@ impl ::flatbuffers::Verifiable for Patterns<'_> {
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u32>>>("set_parent", Self::VT_SET_PARENT, true)?
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, i64>>>("set_dual2", Self::VT_SET_DUAL2, true)?
      .visit_field::<::flatbuffers::ForwardsUOffset<::flatbuffers::Vector<'_, u32>>>("set_of", Self::VT_SET_OF, true)?
+     .visit_field::<Solved>("solved", Self::VT_SOLVED, false)?
+     .visit_field::<f64>("claimed", Self::VT_CLAIMED, false)?
+     .visit_field::<u32>("rounds", Self::VT_ROUNDS, false)?
+     .visit_field::<u32>("improved", Self::VT_IMPROVED, false)?
      .finish();
     Ok(())
   }
@@ -414,6 +738,10 @@ pub struct PatternsArgs<'a> {
     pub set_parent: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u32>>>,
     pub set_dual2: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, i64>>>,
     pub set_of: Option<::flatbuffers::WIPOffset<::flatbuffers::Vector<'a, u32>>>,
+    pub solved: Option<&'a Solved>,
+    pub claimed: f64,
+    pub rounds: u32,
+    pub improved: u32,
 }
 impl<'a> Default for PatternsArgs<'a> {
   #[inline]
@@ -430,6 +758,10 @@ impl<'a> Default for PatternsArgs<'a> {
       set_parent: None, // required field
       set_dual2: None, // required field
       set_of: None, // required field
+      solved: None,
+      claimed: f64::NAN,
+      rounds: 0,
+      improved: 0,
     }
   }
 }
@@ -484,6 +816,22 @@ impl<'a: 'b, 'b, A: ::flatbuffers::Allocator + 'a> PatternsBuilder<'a, 'b, A> {
     self.fbb_.push_slot_always::<::flatbuffers::WIPOffset<_>>(Patterns::VT_SET_OF, set_of);
   }
   #[inline]
+  pub fn add_solved(&mut self, solved: &Solved) {
+    self.fbb_.push_slot_always::<&Solved>(Patterns::VT_SOLVED, solved);
+  }
+  #[inline]
+  pub fn add_claimed(&mut self, claimed: f64) {
+    self.fbb_.push_slot::<f64>(Patterns::VT_CLAIMED, claimed, f64::NAN);
+  }
+  #[inline]
+  pub fn add_rounds(&mut self, rounds: u32) {
+    self.fbb_.push_slot::<u32>(Patterns::VT_ROUNDS, rounds, 0);
+  }
+  #[inline]
+  pub fn add_improved(&mut self, improved: u32) {
+    self.fbb_.push_slot::<u32>(Patterns::VT_IMPROVED, improved, 0);
+  }
+  #[inline]
   pub fn new(_fbb: &'b mut ::flatbuffers::FlatBufferBuilder<'a, A>) -> PatternsBuilder<'a, 'b, A> {
     let start = _fbb.start_table();
     PatternsBuilder {
@@ -520,6 +868,10 @@ impl ::core::fmt::Debug for Patterns<'_> {
       ds.field("set_parent", &self.set_parent());
       ds.field("set_dual2", &self.set_dual2());
       ds.field("set_of", &self.set_of());
+      ds.field("solved", &self.solved());
+      ds.field("claimed", &self.claimed());
+      ds.field("rounds", &self.rounds());
+      ds.field("improved", &self.improved());
       ds.finish()
   }
 }
