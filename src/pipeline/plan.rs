@@ -369,7 +369,7 @@ fn balance(
         let options = intervals::Options {
             corner_deg: job.corner_deg,
             upper_ratio: 2.5,
-            block_ratio: 1.25,
+            block_ratio: 2.2,
             least_edge: job.min_edge(),
         };
         let goals = intervals::plan(domain, sizes, arrangement, partition, &options);
