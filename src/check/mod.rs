@@ -54,6 +54,7 @@ mod following;
 mod outline;
 mod parity;
 mod rings;
+mod seam_rows;
 mod segments;
 mod shortest;
 mod walks;

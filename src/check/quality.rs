@@ -3,6 +3,7 @@
 //! Shape measures are those of [`geometry::quad`](crate::geometry::quad). Quantiles come from bins
 //! of fixed width (their resolution is said with each), extremes are exact.
 
+use crate::check::seam_rows::SeamRows;
 use crate::chunk::views::FrameView;
 use crate::chunk::views::PatchView;
 use crate::geometry::point::Xy;
@@ -151,6 +152,10 @@ pub struct Quality {
     pub edge_open_over_size: Histogram,
     /// Of these, edges beside no cell that touches a line: at least a row away.
     pub edge_far_over_size: Histogram,
+    /// Scaled Jacobian of the cells within two rows of a seam, rungs apart; bins of 0.001.
+    pub seam_scaled_jacobian: Histogram,
+    /// The same of all other cells of their patches.
+    pub off_seam_scaled_jacobian: Histogram,
     /// Hydraulic size (4 area / perimeter) of each cell over the size wished; bins of 0.001.
     pub hydraulic_over_size: Histogram,
     /// Hydraulic size of each cell, metres, least only (bins are relative to the default size).
@@ -240,6 +245,7 @@ pub(crate) struct Measuring<'a> {
     around: Vec<u8>,
     /// The same for the nodes of the patch at hand.
     inside: Vec<u8>,
+    seam_rows: SeamRows,
     pub area_m2: f64,
 }
 
@@ -258,6 +264,8 @@ impl<'a> Measuring<'a> {
                 edge_over_size: Histogram::new(0.0, 4.0, 800),
                 edge_open_over_size: Histogram::new(0.0, 4.0, 800),
                 edge_far_over_size: Histogram::new(0.0, 4.0, 800),
+                seam_scaled_jacobian: Histogram::new(-1.0, 1.0, 2000),
+                off_seam_scaled_jacobian: Histogram::new(-1.0, 1.0, 2000),
                 hydraulic_over_size: Histogram::new(0.0, 2.0, 2000),
                 hydraulic_min_m: f64::INFINITY,
                 area_m2: 0.0,
@@ -272,6 +280,7 @@ impl<'a> Measuring<'a> {
             },
             around: vec![0; frame.nodes.len()],
             inside: Vec::new(),
+            seam_rows: SeamRows::of(&frame),
             area_m2: 0.0,
         }
     }
@@ -282,6 +291,7 @@ impl<'a> Measuring<'a> {
         self.inside.clear();
         self.inside.resize(patch.nodes(), 0);
         let beside = beside_lines(patch);
+        let near_seams = self.seam_rows.near(patch);
         let mut share = self.quality.methods[usize::from(patch.method).min(4)];
         for quad in patch.quads {
             let corners = quad.map(|node| places[node as usize]);
@@ -291,6 +301,14 @@ impl<'a> Measuring<'a> {
             }
             let shape = Shape::of(&corners);
             self.measure(&corners, &shape, size_m);
+            if let Some(near) = &near_seams {
+                let near = quad.iter().any(|&node| near[node as usize]);
+                let cells = match near {
+                    true => &mut self.quality.seam_scaled_jacobian,
+                    false => &mut self.quality.off_seam_scaled_jacobian,
+                };
+                cells.add(shape.scaled_jacobian);
+            }
             let is_open = quad.map(|node| node as usize >= patch.boundary.len());
             for k in (0..4).filter(|&k| is_open[k] && is_open[(k + 1) % 4]) {
                 let length = shape.sides_m[k];

@@ -158,6 +158,13 @@ fn quality(verdict: &Verdict) -> Value {
         "edge_open_p95": q.edge_open_over_size.quantile(0.95),
         "edge_far_p50": q.edge_far_over_size.quantile(0.5),
         "edge_far_p95": q.edge_far_over_size.quantile(0.95),
+        "seam_cells": q.seam_scaled_jacobian.count,
+        "seam_sj_mean": q.seam_scaled_jacobian.mean(),
+        "seam_sj_p1": q.seam_scaled_jacobian.quantile(0.01),
+        "seam_sj_p5": q.seam_scaled_jacobian.quantile(0.05),
+        "off_seam_sj_mean": q.off_seam_scaled_jacobian.mean(),
+        "off_seam_sj_p1": q.off_seam_scaled_jacobian.quantile(0.01),
+        "off_seam_sj_p5": q.off_seam_scaled_jacobian.quantile(0.05),
         "angle_min_deg": q.angle_deg.min,
         "angle_max_deg": q.angle_deg.max,
     })

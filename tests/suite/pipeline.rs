@@ -217,6 +217,28 @@ fn same_bytes_for_any_threads_tiles_and_run() {
     }
 }
 
+#[test]
+fn cells_beside_seams_are_shaped_as_well_as_others() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    write_city(&city(60, 5), &at.join("city.geojson"));
+    let job = Job {
+        seam_budget_quads: 1500,
+        ..Job::usual(at.join("city.geojson"), at.join("a.polder"), 5.0)
+    };
+    let quality = build(&job, &|_| {}).unwrap().verdict.quality;
+    let (near, others) = (
+        quality.seam_scaled_jacobian,
+        quality.off_seam_scaled_jacobian,
+    );
+    assert!(near.count > 500 && others.count > 5000, "{}", near.count);
+    assert!(near.mean() > others.mean());
+    for share in [0.01, 0.05, 0.5] {
+        let both = [&near, &others].map(|it| it.quantile(share));
+        assert!(both[0] > both[1] - 0.01, "{share}: {both:?}");
+    }
+}
+
 fn write_city(city: &City, to: &Path) {
     let feature = |role: &str, kind: &str, shape: &str, points: String| {
         format!(
