@@ -44,7 +44,8 @@
 //!    pushed apart bit by bit.
 //! 4. `collapse`: faces that are too thin to hold elements are closed, and small triangles, which
 //!    need six sides; small loops are dropped.
-//! 5. `relax`: with frozen topology, nodes and edges push each other apart.
+//! 5. `relax`: with frozen topology, nodes and edges push each other apart. Once everywhere, and
+//!    once more where a later step changed something.
 //! 6. `tips`: tips that are still acute get an edge across, and with it a fourth corner.
 //! 7. `audit`: everything is measured against the input again; `thread`: the edges of each line are
 //!    made one way from end to end; `leftovers`: what could not be had is named. Two halves that can
@@ -361,10 +362,11 @@ fn make_room(graph: &mut Graph) {
     let mark = graph.touched.len();
     wedges::divide_wedges(graph, &GENTLE.zip, &graph.nodes());
     relax::relax(graph, &wanted, &graph.nodes());
+    let relaxed = graph.touched.len();
     tips::blunt_tips(graph, &BLUNT, &graph.nodes());
     separate::separate(graph, &stuck, &graph.nodes());
     simplify::simplify(graph, &SMOOTH, &graph.nodes_since(mark));
     // two nodes that became one may have left a wedge between their long edges
     wedges::divide_wedges(graph, &GENTLE.zip, &graph.nodes_since(mark));
-    relax::relax(graph, &wanted, &graph.nodes_since(mark));
+    relax::relax(graph, &wanted, &graph.nodes_since(relaxed));
 }

@@ -27,8 +27,9 @@ pub(super) struct Wanted {
 
 /// Share of the wanted push that is made at once: neighbours push too.
 const STEP: f64 = 0.6;
-/// Pushes below this share of the mesh size are not made.
-const STILL: f64 = 0.005;
+/// Pushes below this share of the mesh size are not made: smaller ones go on and on, and move no
+/// figure of the mesh.
+const STILL: f64 = 0.01;
 
 /// So many rounds go by before what is near is looked up again,
 const ROUNDS_A_LOOK: usize = 3;
