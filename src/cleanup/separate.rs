@@ -398,6 +398,10 @@ pub(super) fn join(graph: &mut Graph, node: u32, edge: u32, near: f64, share: f6
 /// Moves a node to `place`, and the edge too.
 fn land(graph: &mut Graph, node: u32, edge: u32, place: Xy, share: f64) -> Option<u32> {
     let p = graph.measure.on_grid(place);
+    // else the edge would be bent in vain
+    if !graph.would_fit(node, p, share) {
+        return None;
+    }
     graph.attempt(|graph| {
         let there = graph.bend(edge, Bend::At(p), share)?;
         graph.merge(node, there, share).then_some(there)
