@@ -18,36 +18,22 @@ pub(super) type Stretch = (LineId, f64, f64);
 /// Stretches shorter than this are rounding, metres.
 const ROUNDING_M: f64 = 1e-6;
 
-/// What came in and is not in the result, with the reason, and the table of figures. `given`: the
-/// [`stretches`] of the input.
-pub(super) fn audit(graph: &Graph, given: &[Stretch]) -> (Vec<Dropped>, Tally) {
+/// What came in and is not in the result, with the reason. `given`: the [`stretches`] of the input.
+pub(super) fn missing(graph: &Graph, given: &[Stretch]) -> Vec<Dropped> {
     let live = graph.edges.iter().filter(|edge| edge.alive);
     let there = stretches(graph, live.flat_map(|edge| &edge.pieces));
     let carriers = carriers(graph);
-    let mut dropped: Vec<Dropped> = Vec::new();
-    let missing = subtract(given, &there);
     let mut known: Vec<&Dropped> = graph.dropped.iter().collect();
     known.sort_by_key(|it| it.line);
-    for (line, from_m, to_m) in missing
-        .iter()
+    (subtract(given, &there).iter())
         .flat_map(|it| uncovered(graph, &carriers, it, 0.0))
-    {
-        let reason = reason(graph, &known, (line, from_m, to_m));
-        dropped.push(Dropped {
+        .map(|(line, from_m, to_m)| Dropped {
             line,
-            reason,
+            reason: reason(graph, &known, (line, from_m, to_m)),
             from_m,
             to_m,
-        });
-    }
-    let mut tally = displacements(graph);
-    tally.length_m = given.iter().map(|(_, from, to)| to - from).sum();
-    tally.length_dropped_m = (dropped.iter())
-        .filter(|it| it.reason != Reason::Shrunk)
-        .map(|it| it.to_m - it.from_m)
-        .sum();
-    tally.rows = rows(graph);
-    (dropped, tally)
+        })
+        .collect()
 }
 
 /// The union of the pieces, sorted; of constraint lines only.
@@ -196,11 +182,15 @@ fn is_a_node(graph: &Graph, line: LineId, from_m: f64, to_m: f64) -> bool {
 /// Largest and 99 % displacement by length, of every segment of every piece from the edges of its
 /// line: its own one and those before and after. Where a line turns, the stretches that belong to
 /// the one edge and to the other part at a place that is not always the nearest to both.
-fn displacements(graph: &Graph) -> Tally {
-    // distance, its share of the size, length
-    let mut samples: Vec<[f64; 3]> = Vec::new();
+pub(super) fn displacements(graph: &Graph) -> Tally {
+    let mut samples: Vec<Sample> = Vec::new();
+    let live = graph.edges.iter().filter(|edge| edge.alive);
+    let pieces: usize = live.map(|edge| edge.pieces.len()).sum();
+    // four for each segment of each piece, which hold the vertices between them
+    samples.reserve(4 * (pieces + graph.measure.vertices_len()));
     // at vertices, which have no length
     let mut worst = [0.0_f64; 2];
+    let mut way: Vec<Xy> = Vec::new();
     for edge in graph.edges.iter().filter(|edge| edge.alive) {
         for piece in &edge.pieces {
             let sides = sides_of_line(graph, edge, piece.line);
@@ -210,7 +200,8 @@ fn displacements(graph: &Graph) -> Tally {
             };
             let size_m = graph.measure.size_m[piece.line as usize];
             let (low, high) = (piece.from_m.min(piece.to_m), piece.from_m.max(piece.to_m));
-            let mut way: Vec<Xy> = vec![graph.measure.point(piece.line, low)];
+            way.clear();
+            way.push(graph.measure.point(piece.line, low));
             way.extend(graph.measure.vertices(piece));
             way.push(graph.measure.point(piece.line, high));
             for pair in way.windows(2) {
@@ -221,7 +212,11 @@ fn displacements(graph: &Graph) -> Tally {
                     let t = (f64::from(k) + 0.5) / 4.0;
                     let p = [u[0] + t * (v[0] - u[0]), u[1] + t * (v[1] - u[1])];
                     let away = away_m(p);
-                    samples.push([away, away / size_m, length / 4.0]);
+                    samples.push(Sample {
+                        away_m: away,
+                        length_m: (length / 4.0) as f32,
+                        line: piece.line,
+                    });
                 }
                 for p in [u, v] {
                     let away = away_m(p);
@@ -230,9 +225,13 @@ fn displacements(graph: &Graph) -> Tally {
             }
         }
     }
-    let [displacement_max_m, displacement_p99_m] = extremes(&mut samples, 0, worst[0]);
-    let [displacement_max_over_size, displacement_p99_over_size] =
-        extremes(&mut samples, 1, worst[1]);
+    let size_m = &graph.measure.size_m;
+    let [displacement_max_m, displacement_p99_m] = extremes(&samples, |it| it.away_m, worst[0]);
+    let [displacement_max_over_size, displacement_p99_over_size] = extremes(
+        &samples,
+        |it| it.away_m / size_m[it.line as usize],
+        worst[1],
+    );
     Tally {
         displacement_max_m,
         displacement_p99_m,
@@ -253,31 +252,44 @@ fn sides_of_line(graph: &Graph, edge: &Edge, line: LineId) -> SmallVec<[(Xy, Xy)
     near.map(|&it| graph.ends_m(it)).collect()
 }
 
-/// Largest value, at least `worst`, and 99 % quantile by length of one column of the samples. O(n):
-/// what lies on the wrong side of the middle is never sorted.
-fn extremes(samples: &mut [[f64; 3]], column: usize, worst: f64) -> [f64; 2] {
-    let length = |samples: &[[f64; 3]]| samples.iter().map(|it| it[2]).sum::<f64>();
-    let largest = samples.iter().map(|it| it[column]).fold(worst, f64::max);
-    let mut rest_m = 0.99 * length(samples);
-    let mut rest = samples;
-    while rest.len() > 1 {
-        let middle = rest.len() / 2;
-        rest.select_nth_unstable_by(middle, |a, b| {
-            a[column].total_cmp(&b[column]).then(a[2].total_cmp(&b[2]))
-        });
-        let (low, high) = rest.split_at_mut(middle);
-        let low_m = length(low);
-        if low_m >= rest_m {
-            rest = low;
-        } else {
-            rest_m -= low_m;
-            rest = high;
-        }
-    }
-    [largest, rest.first().map_or(0.0, |it| it[column])]
+/// A short part of a stretch.
+struct Sample {
+    /// From the edges of its line.
+    away_m: f64,
+    length_m: f32,
+    line: LineId,
 }
 
-fn rows(graph: &Graph) -> Vec<(&'static str, u64, f64)> {
+/// Bins that values are counted in, before those of one bin are sorted.
+const BINS: usize = 4096;
+
+/// Largest value, at least `worst`, and 99 % quantile by length. O(n): only the bin that the
+/// quantile lies in is sorted.
+fn extremes(samples: &[Sample], value: impl Fn(&Sample) -> f64, worst: f64) -> [f64; 2] {
+    let largest = samples.iter().map(&value).fold(worst, f64::max);
+    let bin = |value: f64| ((value / largest * BINS as f64) as usize).min(BINS - 1);
+    let mut length_m = vec![0.0; BINS];
+    for it in samples {
+        length_m[bin(value(it))] += f64::from(it.length_m);
+    }
+    let mut rest_m = 0.99 * length_m.iter().sum::<f64>();
+    let mut is_before = |more_m: f64| {
+        let is_before = more_m < rest_m;
+        rest_m -= if is_before { more_m } else { 0.0 };
+        is_before
+    };
+    let last = BINS - 1;
+    let from = (0..last).find(|&k| !is_before(length_m[k]));
+    let from = from.unwrap_or(last);
+    let all = samples.iter().map(|it| (value(it), it.length_m));
+    let mut here: Vec<(f64, f32)> = all.filter(|it| bin(it.0) == from).collect();
+    here.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let quantile = here.iter().find(|it| !is_before(f64::from(it.1)));
+    [largest, quantile.or(here.last()).map_or(0.0, |it| it.0)]
+}
+
+/// How often each kind of change happened, and how far it moved things.
+pub(super) fn rows(graph: &Graph) -> Vec<(&'static str, u64, f64)> {
     let mut rows: Vec<(&'static str, u64, f64)> = Vec::new();
     for change in &graph.changes {
         match rows.iter_mut().find(|row| row.0 == change.what) {

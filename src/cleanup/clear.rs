@@ -35,7 +35,7 @@ impl Graph<'_> {
     pub(super) fn is_clear(&self, sweeps: &[Sweep], room: &Room) -> bool {
         sweeps.iter().all(|sweep| {
             let [a, b, c] = sweep.triangle;
-            !self.index.any(a, b, height(a, b, c), |held| {
+            !self.index.any_at([a, b, c], height(a, b, c), |held| {
                 let [p, q] = held.at();
                 let is_allowed = room.allows(sweep.triangle, p)
                     && room.allows(sweep.triangle, q)

@@ -38,11 +38,10 @@
 //! into its district, some ten. Of the nodes of malta-osm at 35.2 a fifth are open in the bands, and
 //! one in thirty in the last pass, which no cores share; relaxation stays with these.
 
-use crate::cleanup::Cleaned;
 use crate::cleanup::Options;
 use crate::cleanup::changes::Change;
 use crate::cleanup::changes::Dropped;
-use crate::cleanup::finish;
+use crate::cleanup::finish::Joined;
 use crate::cleanup::graph::Graph;
 use crate::cleanup::graph::Loose;
 use crate::cleanup::graph::Stand;
@@ -211,19 +210,25 @@ fn clean_window(
 
 /// Joins the bands, in their order, with all that lies outside of them, and cleans what is still
 /// open; everything if there are no districts.
-pub fn join(site: Site, met: Met, bands: Vec<Made>) -> Cleaned {
+pub fn join<'a>(site: &'a Site, met: Met, bands: Vec<Made>) -> Joined<'a> {
     let mut graph = match site.layout.districts.is_empty() {
         true => Graph::new(&site.arrangement, &site.measure),
-        false => joined(&site, met, bands),
+        false => joined(site, met, bands),
     };
     if site.is_on {
         make_room(&mut graph);
     }
-    finish(graph, site.arrangement.clone(), site.is_on)
+    Joined {
+        graph,
+        input: &site.arrangement,
+        is_on: site.is_on,
+    }
 }
 
 fn joined<'a>(site: &'a Site, met: Met, bands: Vec<Made>) -> Graph<'a> {
-    let (mut edges, mut open, mut done) = (Vec::new(), met.open, Vec::new());
+    let all = met.made.iter().chain(&bands).map(|it| it.edges.len());
+    let mut edges = Vec::with_capacity(all.sum::<usize>() + met.between.len());
+    let (mut open, mut done) = (met.open, Vec::new());
     let (mut changes, mut dropped) = (Vec::new(), Vec::new());
     let mut keep = |kept: Vec<Loose>, bands: &[Window]| {
         let is_in = |it: &Loose, band: &Window| it.ends.iter().all(|&end| band.owns(end));
@@ -258,26 +263,25 @@ fn joined<'a>(site: &'a Site, met: Met, bands: Vec<Made>) -> Graph<'a> {
 /// The graph of these edges. Nodes are settled, but for the open ones and their neighbours.
 fn graph_of<'a>(
     measure: &'a Measure<'a>,
-    edges: Vec<Loose>,
+    mut edges: Vec<Loose>,
     bounds: Option<Window>,
     is_open: impl Fn(Point) -> bool,
 ) -> Graph<'a> {
+    // ids are in the order of points, so edges are in that of their ids
+    edges.sort_unstable_by_key(|it| it.ends);
     let mut at: Vec<Point> = edges.iter().flat_map(|edge| edge.ends).collect();
     at.sort_unstable();
     at.dedup();
-    let id = |p: Point| at.binary_search(&p).expect("all ends are there") as u32;
-    let mut named: Vec<([u32; 2], Loose)> =
-        edges.into_iter().map(|it| (it.ends.map(id), it)).collect();
-    named.sort_unstable_by_key(|it| it.0);
     let is_open: Vec<bool> = at.iter().map(|&p| is_open(p)).collect();
-    let length: f64 = named
-        .iter()
-        .map(|(_, it)| it.ends[0].distance(it.ends[1]))
+    let length: f64 = (edges.iter())
+        .map(|it| it.ends[0].distance(it.ends[1]))
         .sum();
-    let mean = length / named.len().max(1) as f64;
+    let mean = length / edges.len().max(1) as f64;
     let mut graph = Graph::without_edges(measure, at, mean, bounds);
     let mut stand = vec![Stand::Settled; is_open.len()];
-    for (ends, edge) in named {
+    for edge in edges {
+        let id = |p: Point| graph.at.binary_search(&p).expect("all ends are there") as u32;
+        let ends = edge.ends.map(id);
         if ends.iter().any(|&end| is_open[end as usize]) {
             ends.iter()
                 .for_each(|&end| stand[end as usize] = Stand::Open);
@@ -290,23 +294,17 @@ fn graph_of<'a>(
     graph
 }
 
-/// The edges from one district to another.
+/// The edges from one district to another: those that were on both sides where a window was halved,
+/// and so are listed more than once.
 fn between(site: &Site) -> Vec<Loose> {
-    let arrangement = &site.arrangement;
-    let mut home = vec![u32::MAX; arrangement.points.len()];
-    for (k, district) in (0..).zip(&site.layout.districts) {
-        for node in district
-            .edges
-            .iter()
-            .flat_map(|&edge| arrangement.edges[edge as usize])
-        {
-            if district.window.owns(arrangement.points[node as usize]) {
-                home[node as usize] = k;
-            }
+    let mut lists = vec![0_u16; site.arrangement.edges.len()];
+    for district in &site.layout.districts {
+        for &edge in &district.edges {
+            lists[edge as usize] += 1;
         }
     }
-    let all = (0..).zip(&arrangement.edges);
-    all.filter(|(_, [a, b])| home[*a as usize] != home[*b as usize])
+    let all = (0..).zip(&lists);
+    all.filter(|&(_, &lists)| lists > 1)
         .map(|(edge, _)| site.loose(edge))
         .collect()
 }

@@ -213,9 +213,10 @@ impl<'a> Graph<'a> {
         self.index.insert_node(node, to);
         for k in 0..self.star[node as usize].len() {
             let edge = self.star[node as usize][k];
-            let end = self.point(self.edges[edge as usize].other(node));
-            self.index.remove(edge, from, end);
-            self.hold(edge);
+            let ends = self.edges[edge as usize].ends;
+            let at = ends.map(|end| self.point(end));
+            let was = ends.map(|end| if end == node { from } else { self.point(end) });
+            self.index.replace(was, Held::new(edge, ends, at));
         }
     }
 
@@ -438,15 +439,22 @@ impl<'a> Graph<'a> {
 
     /// The nodes touched since `touched` had this length, and their neighbours.
     pub(super) fn nodes_since(&self, mark: usize) -> Vec<u32> {
-        let mut nodes = self.touched[mark..].to_vec();
-        nodes.sort_unstable();
-        nodes.dedup();
-        for k in 0..nodes.len() {
-            nodes.extend(self.neighbours(nodes[k]));
+        let mut is_in = vec![false; self.at.len()];
+        let mut nodes = Vec::new();
+        let mut take = |node: u32, nodes: &mut Vec<u32>| {
+            if !std::mem::replace(&mut is_in[node as usize], true) {
+                nodes.push(node);
+            }
+        };
+        for &node in &self.touched[mark..] {
+            take(node, &mut nodes);
         }
-        nodes.sort_unstable();
-        nodes.dedup();
+        for k in 0..nodes.len() {
+            let near = self.neighbours(nodes[k]);
+            near.into_iter().for_each(|it| take(it, &mut nodes));
+        }
         nodes.retain(|&node| self.degree(node) > 0);
+        nodes.sort_unstable();
         nodes
     }
 

@@ -2,7 +2,6 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::cleanup::measure::to_segment;
 use crate::geometry::point::Point;
 
 /// Edges by the square cells that they pass, nodes by the cell that they lie in. A segment occupies
@@ -111,6 +110,24 @@ impl Index {
         });
     }
 
+    /// An edge that was between these points and is now as `held` says.
+    pub(super) fn replace(&mut self, [p, q]: [Point; 2], held: Held) {
+        let side = self.edges.side;
+        let (was, is) = (box_of(side, p, q), box_of(side, held.at[0], held.at[1]));
+        if was != is || !was.is_row() {
+            self.remove(held.edge, p, q);
+            self.insert(held);
+            return;
+        }
+        // most stay in the cells where they were
+        was.any(|cell| {
+            let mut there = self.edges.at(cell).iter_mut();
+            let it = there.find(|it| it.edge == held.edge);
+            *it.expect("an edge occupies all its cells") = held;
+            false
+        });
+    }
+
     /// Takes up all nodes, and from now on each one that is inserted.
     pub(super) fn take_nodes(&mut self, at: &[Point]) {
         self.nodes = Some(Cells::new(NODE_CELL * self.edges.side));
@@ -141,16 +158,41 @@ impl Index {
         a: Point,
         b: Point,
         margin: f64,
-        mut is: impl FnMut(&Held) -> bool,
+        is: impl FnMut(&Held) -> bool,
     ) -> bool {
         let reach = margin.ceil() as i32 + 1;
-        let (left, right) = (a.x.min(b.x) - reach, a.x.max(b.x) + reach);
-        let (bottom, top) = (a.y.min(b.y) - reach, a.y.max(b.y) + reach);
+        let low = Point::new(a.x.min(b.x) - reach, a.y.min(b.y) - reach);
+        let high = Point::new(a.x.max(b.x) + reach, a.y.max(b.y) + reach);
+        self.any_in([low, high], a, b, margin, is)
+    }
+
+    /// True if one of the edges whose bounding box meets that of the triangle is what is looked
+    /// for. `height`: of the third corner above the first side.
+    pub(super) fn any_at(
+        &self,
+        [a, b, c]: [Point; 3],
+        height: f64,
+        is: impl FnMut(&Held) -> bool,
+    ) -> bool {
+        let low = Point::new(a.x.min(b.x).min(c.x), a.y.min(b.y).min(c.y));
+        let high = Point::new(a.x.max(b.x).max(c.x), a.y.max(b.y).max(c.y));
+        self.any_in([low, high], a, b, height, is)
+    }
+
+    #[inline]
+    fn any_in(
+        &self,
+        [low, high]: [Point; 2],
+        a: Point,
+        b: Point,
+        margin: f64,
+        mut is: impl FnMut(&Held) -> bool,
+    ) -> bool {
         self.edges.any(a, b, margin + 1.0, |it| {
             let [p, q] = it.at;
             // one branch for all four: it is taken by few
             let is_aside =
-                (q.x < left) | (p.x > right) | (p.y.max(q.y) < bottom) | (p.y.min(q.y) > top);
+                (q.x < low.x) | (p.x > high.x) | (p.y.max(q.y) < low.y) | (p.y.min(q.y) > high.y);
             !is_aside && is(it)
         })
     }
@@ -191,7 +233,22 @@ fn is_within(p: Point, [a, b]: [Point; 2], reach: f64) -> bool {
     let limit = reach + 1.0;
     // most are beside the bounding box
     let is_beside = |k: usize| (a[k].min(b[k]) - limit <= p[k]) & (p[k] <= a[k].max(b[k]) + limit);
-    (is_beside(0) & is_beside(1)) && to_segment(p, a, b).0 <= limit
+    if !(is_beside(0) & is_beside(1)) {
+        return false;
+    }
+    let from = |o: [f64; 2]| [p[0] - o[0], p[1] - o[1]];
+    let dot = |u: [f64; 2], v: [f64; 2]| u[0] * v[0] + u[1] * v[1];
+    let (u, v) = ([b[0] - a[0], b[1] - a[1]], from(a));
+    let (along, length2, limit2) = (dot(u, v), dot(u, u), limit * limit);
+    if along <= 0.0 {
+        dot(v, v) <= limit2
+    } else if along >= length2 {
+        dot(from(b), from(b)) <= limit2
+    } else {
+        // twice the area over the length is the distance: without a root or a division
+        let area = u[0] * v[1] - u[1] * v[0];
+        area * area <= limit2 * length2
+    }
 }
 
 fn block((column, row): (i32, i32)) -> (i32, i32) {
@@ -209,6 +266,46 @@ fn floor(v: f64) -> i32 {
     cut - i32::from(f64::from(cut) > v)
 }
 
+/// A rectangle of cells.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Range {
+    first: i32,
+    last: i32,
+    bottom: i32,
+    top: i32,
+}
+
+impl Range {
+    fn of(side: f64, low: [f64; 2], high: [f64; 2]) -> Range {
+        let per_side = 1.0 / side;
+        let cell = |v: f64| floor(v * per_side);
+        Range {
+            first: cell(low[0]),
+            last: cell(high[0]),
+            bottom: cell(low[1]),
+            top: cell(high[1]),
+        }
+    }
+
+    /// True if a segment from side to side passes all of it.
+    fn is_row(&self) -> bool {
+        self.first == self.last || self.bottom == self.top
+    }
+
+    /// Calls `visit` for every cell, until it says true.
+    fn any(&self, mut visit: impl FnMut((i32, i32)) -> bool) -> bool {
+        let mut columns = self.first..=self.last;
+        columns.any(|column| (self.bottom..=self.top).any(|row| visit((column, row))))
+    }
+}
+
+/// The cells of the bounding box of a segment.
+fn box_of(side: f64, p: Point, q: Point) -> Range {
+    let low = [p.x.min(q.x), p.y.min(q.y)].map(f64::from);
+    let high = [p.x.max(q.x), p.y.max(q.y)].map(f64::from);
+    Range::of(side, low, high)
+}
+
 /// Calls `visit` for every cell within `margin` of the segment, until it says true: column by
 /// column, the rows that the segment passes inside the column widened by the margin.
 fn passed(
@@ -221,15 +318,19 @@ fn passed(
     let (a, b) = (p.min(q), p.max(q));
     let (ax, ay) = (f64::from(a.x), f64::from(a.y));
     let (bx, by) = (f64::from(b.x), f64::from(b.y));
+    let (low, high) = (ay.min(by), ay.max(by));
+    let range = Range::of(
+        side,
+        [ax - margin, low - margin],
+        [bx + margin, high + margin],
+    );
+    if range.is_row() {
+        // most segments are shorter than a cell
+        return range.any(visit);
+    }
     let per_side = 1.0 / side;
     let cell = |v: f64| floor(v * per_side);
-    let (low, high) = (ay.min(by), ay.max(by));
-    let (first, last) = (cell(ax - margin), cell(bx + margin));
-    let (bottom, top) = (cell(low - margin), cell(high + margin));
-    if first == last || bottom == top {
-        // most segments are shorter than a cell
-        return (first..=last).any(|column| (bottom..=top).any(|row| visit((column, row))));
-    }
+    let Range { first, last, .. } = range;
     let slope = if bx > ax { (by - ay) / (bx - ax) } else { 0.0 };
     (first..=last).any(|column| {
         let from = (f64::from(column) * side - margin).clamp(ax, bx);

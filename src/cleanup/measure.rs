@@ -131,6 +131,11 @@ impl<'a> Measure<'a> {
         self.domain.lines[line as usize].role != Role::Constraint
     }
 
+    /// Of all lines.
+    pub(super) fn vertices_len(&self) -> usize {
+        self.vertices.len()
+    }
+
     #[inline]
     fn vertices_of(&self, line: LineId) -> &[Vertex] {
         let line = line as usize;
@@ -193,9 +198,30 @@ impl<'a> Measure<'a> {
     /// True if [`Measure::deviation_m`] is at most `share` of the line's tolerance.
     pub(super) fn fits(&self, piece: &Piece, a: Xy, b: Xy, share: f64) -> bool {
         let limit = share * self.tolerance_m[piece.line as usize];
-        distance(self.point(piece.line, piece.from_m), a) <= limit
-            && distance(self.point(piece.line, piece.to_m), b) <= limit
-            && (self.vertices(piece)).all(|p| to_segment(p, a, b).0 <= limit)
+        let vertices = self.vertices_of(piece.line);
+        let (from, to) = ((piece.from_m, a), (piece.to_m, b));
+        let (low, high) = match from.0 <= to.0 {
+            true => (from, to),
+            false => (to, from),
+        };
+        let is_near = |k: usize, (station_m, end): (f64, Xy)| {
+            let k = k.clamp(1, vertices.len() - 1);
+            distance(between(vertices[k - 1], vertices[k], station_m), end) <= limit
+        };
+        // one search, then along the line: this is asked most often of all
+        let mut k = vertices.partition_point(|it| it.station_m <= low.0);
+        if !is_near(k, low) {
+            return false;
+        }
+        while k < vertices.len() && vertices[k].station_m < high.0 {
+            if to_segment(vertices[k].at, a, b).0 > limit {
+                return false;
+            }
+            k += 1;
+        }
+        // a vertex at the end belongs to it, as it does when its place is asked for
+        k += usize::from(k < vertices.len() && vertices[k].station_m <= high.0);
+        is_near(k, high)
     }
 
     /// The vertices of the line strictly inside the stretch, in the direction of the line.
@@ -261,6 +287,14 @@ fn standing(role: Role, rule: &Rule) -> f64 {
     };
     let priority = (rule.priority + PRIORITY_MAX).clamp(0, 2 * PRIORITY_MAX);
     rim + held + PRIORITY_RANK * f64::from(priority)
+}
+
+/// False if the angle between the directions from `o` to `a` and to `b` is surely not below the one
+/// with this tangent. Most are not, and need no arc tangent.
+pub(super) fn may_be_below(o: Xy, a: Xy, b: Xy, tangent: f64) -> bool {
+    let (u, v) = ([a[0] - o[0], a[1] - o[1]], [b[0] - o[0], b[1] - o[1]]);
+    let (cross, dot) = (u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
+    cross.abs() <= 1.000_001 * tangent * dot
 }
 
 /// The angle between the directions from `o` to `a` and to `b`, degrees, up to 180.

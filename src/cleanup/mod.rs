@@ -44,11 +44,13 @@
 //!    pushed apart bit by bit.
 //! 4. `collapse`: faces that are too thin to hold elements are closed, and small triangles, which
 //!    need six sides; small loops are dropped.
-//! 5. `relax`: with frozen topology, nodes and edges push each other apart.
+//! 5. `relax`: with frozen topology, nodes and edges push each other apart. Once everywhere, and
+//!    once more where a later step changed something.
 //! 6. `tips`: tips that are still acute get an edge across, and with it a fourth corner.
 //! 7. `audit`: everything is measured against the input again; `thread`: the edges of each line are
-//!    made one way from end to end; `leftovers`: what could not be had is named. [`rooms`] looks
-//!    afterwards whether a sub-domain with room for elements was lost; that is measured, not promised.
+//!    made one way from end to end; `leftovers`: what could not be had is named. Two halves that can
+//!    be done at once (`finish`). [`rooms`] looks afterwards whether a sub-domain with room for
+//!    elements was lost; that is measured, not promised.
 //!
 //! Steps 1 to 4 run first with half of the tolerance, then with more of it, then with all: what
 //! needs much movement is done only where nothing else helps. `operate` holds the operations,
@@ -66,9 +68,8 @@
 //! # Cost
 //! Near-linear: each operation looks at a few cells of a hash grid; later rounds look only at what
 //! was changed, and an attempt that failed changes nothing. Relaxation asks once in three rounds
-//! what is near (`nearby`). About 40 us of one core a segment with all that is before and after
-//! (malta-osm at 111), a third of it relaxation; cores share districts and bands. Memory:
-//! some 300 bytes an edge.
+//! what is near (`nearby`); it is a third of all. Cores share districts and bands, and two of them the
+//! end. Memory: some 300 bytes an edge.
 //!
 //! # Not here
 //! Crossings (`noding`), sub-domains and curves (`partition`), chords of curves (none: nodes are
@@ -81,6 +82,7 @@ pub mod check;
 mod clear;
 mod collapse;
 mod districts;
+mod finish;
 mod graph;
 mod importance;
 mod index;
@@ -127,6 +129,8 @@ pub use crate::cleanup::districts::clean_district;
 pub use crate::cleanup::districts::join;
 pub use crate::cleanup::districts::meet;
 pub use crate::cleanup::districts::site;
+pub use crate::cleanup::finish::Joined;
+pub use crate::cleanup::finish::finish;
 pub use crate::cleanup::layout::Band;
 pub use crate::cleanup::layout::District;
 pub use crate::cleanup::layout::GRAIN;
@@ -203,39 +207,7 @@ pub fn clean(
     let met = meet(&site, made);
     let bands = site.bands().iter();
     let bands = bands.map(|it| clean_band(&site, &met, it)).collect();
-    join(site, met, bands)
-}
-
-/// Measures the graph against the input, and makes the arrangement of it.
-fn finish(graph: Graph, input: Arrangement, is_on: bool) -> Cleaned {
-    let given = audit::stretches(&graph, input.pieces.iter());
-    let (mut dropped, mut tally) = audit::audit(&graph, &given);
-    let sharp_before = sharp::sharp_angles(&input, SHARP_DEG);
-    let findings = leftovers::leftovers(&graph);
-    let (arrangement, torn) = match is_on {
-        true => {
-            dropped.sort_by_key(|it| it.line);
-            let limits_m = &graph.measure.tolerance_m;
-            let domain = graph.measure.domain;
-            thread::thread(domain, graph.arrangement(), &given, &dropped, limits_m)
-        }
-        false => {
-            // stretches of less than a cell, there and back, that the graph does not keep
-            dropped.clear();
-            tally.length_dropped_m = 0.0;
-            (input, Vec::new())
-        }
-    };
-    tally.sharp_angles = [sharp_before, sharp::sharp_angles(&arrangement, SHARP_DEG)];
-    dropped.extend(torn);
-    dropped.sort_by(|a, b| (a.line.cmp(&b.line)).then(a.from_m.total_cmp(&b.from_m)));
-    Cleaned {
-        arrangement,
-        dropped,
-        changes: graph.changes,
-        tally,
-        findings,
-    }
+    finish(join(&site, met, bands))
 }
 
 /// Removes only what no one could see.
@@ -390,10 +362,11 @@ fn make_room(graph: &mut Graph) {
     let mark = graph.touched.len();
     wedges::divide_wedges(graph, &GENTLE.zip, &graph.nodes());
     relax::relax(graph, &wanted, &graph.nodes());
+    let relaxed = graph.touched.len();
     tips::blunt_tips(graph, &BLUNT, &graph.nodes());
     separate::separate(graph, &stuck, &graph.nodes());
     simplify::simplify(graph, &SMOOTH, &graph.nodes_since(mark));
     // two nodes that became one may have left a wedge between their long edges
     wedges::divide_wedges(graph, &GENTLE.zip, &graph.nodes_since(mark));
-    relax::relax(graph, &wanted, &graph.nodes_since(mark));
+    relax::relax(graph, &wanted, &graph.nodes_since(relaxed));
 }

@@ -64,6 +64,14 @@ impl Graph<'_> {
         })
     }
 
+    /// False if node `v` cannot be merged with any node at `p` that it has no edge to, as stretches
+    /// would be too far away.
+    pub(super) fn would_fit(&self, v: u32, p: Point, share: f64) -> bool {
+        let mut drafts = self.drafts(v);
+        self.restation(&mut drafts, self.measure.metres(p));
+        self.is_free(v) && self.all_fit(&drafts, p, share)
+    }
+
     /// Moves node `v` onto node `w`: an edge between them is contracted, edges to the same
     /// neighbour become one.
     pub(super) fn merge(&mut self, v: u32, w: u32, share: f64) -> bool {

@@ -27,8 +27,9 @@ pub(super) struct Wanted {
 
 /// Share of the wanted push that is made at once: neighbours push too.
 const STEP: f64 = 0.6;
-/// Pushes below this share of the mesh size are not made.
-const STILL: f64 = 0.005;
+/// Pushes below this share of the mesh size are not made: smaller ones go on and on, and move no
+/// figure of the mesh.
+const STILL: f64 = 0.01;
 
 /// So many rounds go by before what is near is looked up again,
 const ROUNDS_A_LOOK: usize = 3;
@@ -46,6 +47,8 @@ pub(super) fn relax(graph: &mut Graph, wanted: &Wanted, nodes: &[u32]) {
     }
     let mut active = nodes.to_vec();
     let mut first_share = vec![0_u8; graph.at.len()];
+    // the first round in which a node is not yet known to be looked at
+    let mut asked = vec![0; graph.at.len()];
     let mut around = Vec::new();
     let mut nearby = Nearby::new(graph, wanted.gap + DRIFT);
     for round in 0..wanted.rounds {
@@ -68,13 +71,16 @@ pub(super) fn relax(graph: &mut Graph, wanted: &Wanted, nodes: &[u32]) {
             let from = usize::from(first_share[node as usize]);
             if let Some(share) = pushed(graph, &wanted.shares[from..], node, push) {
                 first_share[node as usize] = (from + share) as u8;
-                again.push(node);
-                again.extend(graph.neighbours(node));
-                again.extend_from_slice(&around);
+                let near = graph.neighbours(node);
+                for it in near.iter().chain(&around).chain([&node]).copied() {
+                    if asked[it as usize] <= round {
+                        asked[it as usize] = round + 1;
+                        again.push(it);
+                    }
+                }
             }
         }
         again.sort_unstable();
-        again.dedup();
         active = again;
     }
 }
@@ -87,6 +93,7 @@ fn homeward_m(graph: &Graph, node: u32) -> Xy {
     let at = graph.metres(node);
     let far = FAR * graph.size_at_m(node);
     let (mut away, mut way) = (far, [0.0; 2]);
+    let (mut last, mut end_m) = (None, 0.0);
     for &edge in &graph.star[node as usize] {
         let it = &graph.edges[edge as usize];
         for piece in &it.pieces {
@@ -94,8 +101,12 @@ fn homeward_m(graph: &Graph, node: u32) -> Xy {
                 true => (piece.from_m, piece.to_m),
                 false => (piece.to_m, piece.from_m),
             };
-            // no stretch is farther away than its end
-            if distance(at, graph.measure.point(piece.line, here)) <= away {
+            // no stretch is farther away than its end; mostly the next one starts there
+            if last != Some((piece.line, here)) {
+                last = Some((piece.line, here));
+                end_m = distance(at, graph.measure.point(piece.line, here));
+            }
+            if end_m <= away {
                 continue;
             }
             let station = (graph.measure).nearest(piece.line, here.min(there), here.max(there), at);

@@ -15,6 +15,7 @@ use crate::cleanup::steps::Step;
 use crate::geometry::point::Point;
 use crate::geometry::point::Xy;
 use crate::geometry::predicates::orient;
+use smallvec::SmallVec;
 
 /// What counts as too narrow, in shares of the local mesh size.
 #[derive(Clone, Copy, Debug)]
@@ -115,7 +116,7 @@ pub(super) fn separate(graph: &mut Graph, narrow: &Narrow, nodes: &[u32]) {
         if tries[node as usize] == TRIES_MAX {
             continue;
         }
-        let conflicts = conflicts(graph, narrow, node);
+        let conflicts = conflicts(graph, narrow, node, &mut queue.found);
         let Some(first) = conflicts.first() else {
             continue;
         };
@@ -134,8 +135,12 @@ pub(super) fn separate(graph: &mut Graph, narrow: &Narrow, nodes: &[u32]) {
 }
 
 fn push(graph: &Graph, narrow: &Narrow, node: u32, queue: &mut Queue) {
-    if let Some(first) = conflicts(graph, narrow, node).first() {
-        queue.push(graph, node, first.ratio);
+    let mut least = f64::INFINITY;
+    each_conflict(graph, narrow, node, &mut queue.found, |it| {
+        least = least.min(it.ratio);
+    });
+    if least < f64::INFINITY {
+        queue.push(graph, node, least);
     }
 }
 
@@ -182,10 +187,28 @@ fn gap_ratio(graph: &Graph, narrow: &Narrow, (node, size_m): (u32, f64), edge: u
 }
 
 /// All conflicts of a node, the narrowest first.
-fn conflicts(graph: &Graph, narrow: &Narrow, node: u32) -> Vec<Conflict> {
-    let mut conflicts = Vec::new();
+fn conflicts(
+    graph: &Graph,
+    narrow: &Narrow,
+    node: u32,
+    found: &mut Vec<u32>,
+) -> SmallVec<[Conflict; 4]> {
+    let mut conflicts: SmallVec<[Conflict; 4]> = SmallVec::new();
+    each_conflict(graph, narrow, node, found, |it| conflicts.push(it));
+    conflicts.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
+    conflicts
+}
+
+/// Tells of all conflicts of a node, in an order that depends on ids alone.
+fn each_conflict(
+    graph: &Graph,
+    narrow: &Narrow,
+    node: u32,
+    found: &mut Vec<u32>,
+    mut tell: impl FnMut(Conflict),
+) {
     if graph.degree(node) == 0 {
-        return conflicts;
+        return;
     }
     let at = graph.metres(node);
     let size = graph.size_at_m(node);
@@ -194,23 +217,20 @@ fn conflicts(graph: &Graph, narrow: &Narrow, node: u32) -> Vec<Conflict> {
         let limit = narrow.edge * graph.edges[edge as usize].size_m;
         let length = distance(at, graph.metres(other));
         if length < limit {
-            conflicts.push(Conflict {
+            tell(Conflict {
                 ratio: length / limit,
                 with: With::Neighbour(other),
             });
         }
     }
-    let mut found = Vec::new();
     let reach = narrow.gap.max(narrow.end) * size / graph.measure.grid().cell_m;
-    (graph.index).edges_near(graph.point(node), reach, &mut found);
-    for edge in found {
+    (graph.index).edges_near(graph.point(node), reach, found);
+    for &edge in &*found {
         if let Some(ratio) = gap_ratio(graph, narrow, (node, size), edge) {
             let with = With::Edge(edge);
-            conflicts.push(Conflict { ratio, with });
+            tell(Conflict { ratio, with });
         }
     }
-    conflicts.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
-    conflicts
 }
 
 /// Distance from a node to an edge that is not its own, if the domain lies between them; `None`
@@ -378,6 +398,10 @@ pub(super) fn join(graph: &mut Graph, node: u32, edge: u32, near: f64, share: f6
 /// Moves a node to `place`, and the edge too.
 fn land(graph: &mut Graph, node: u32, edge: u32, place: Xy, share: f64) -> Option<u32> {
     let p = graph.measure.on_grid(place);
+    // else the edge would be bent in vain
+    if !graph.would_fit(node, p, share) {
+        return None;
+    }
     graph.attempt(|graph| {
         let there = graph.bend(edge, Bend::At(p), share)?;
         graph.merge(node, there, share).then_some(there)

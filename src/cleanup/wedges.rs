@@ -4,12 +4,14 @@
 use crate::cleanup::graph::Graph;
 use crate::cleanup::measure::between_deg;
 use crate::cleanup::measure::distance;
+use crate::cleanup::measure::may_be_below;
 use crate::cleanup::operate::Bend;
 use crate::cleanup::separate::join;
 use crate::cleanup::steps::Step;
 use crate::geometry::point::Xy;
 use crate::geometry::predicates::by_angle;
 use crate::geometry::predicates::orient;
+use smallvec::SmallVec;
 
 /// What is zipped.
 #[derive(Clone, Copy, Debug)]
@@ -87,6 +89,8 @@ fn divide(graph: &mut Graph, zip: &Zip, wedge: &Wedge) {
 
 /// All wedges inside the domain below an angle, the sharpest first.
 pub(super) fn wedges(graph: &Graph, below_deg: f64, nodes: &[u32]) -> Vec<Wedge> {
+    assert!(below_deg < 90.0);
+    let tangent = below_deg.to_radians().tan();
     let mut wedges = Vec::new();
     for &hub in nodes {
         let star = sorted_star(graph, hub);
@@ -100,6 +104,10 @@ pub(super) fn wedges(graph: &Graph, below_deg: f64, nodes: &[u32]) -> Vec<Wedge>
                 continue;
             }
             let [a, b] = [e, f].map(|edge| graph.edges[edge as usize].other(hub));
+            let [o, a_m, b_m] = [hub, a, b].map(|node| graph.metres(node));
+            if !may_be_below(o, a_m, b_m, tangent) {
+                continue;
+            }
             let angle_deg = angle_deg(graph, hub, a, b);
             let turns_left = orient(graph.point(hub), graph.point(a), graph.point(b)) > 0;
             if angle_deg < below_deg && turns_left {
@@ -121,9 +129,11 @@ pub(super) fn wedges(graph: &Graph, below_deg: f64, nodes: &[u32]) -> Vec<Wedge>
 }
 
 /// The edges of a node, counter-clockwise.
-fn sorted_star(graph: &Graph, node: u32) -> Vec<u32> {
-    let mut star = graph.star[node as usize].to_vec();
-    star.sort_by(|&e, &f| by_angle(graph.heading(node, e), graph.heading(node, f)));
+fn sorted_star(graph: &Graph, node: u32) -> SmallVec<[u32; 6]> {
+    let mut star: SmallVec<[u32; 6]> = graph.star[node as usize].iter().copied().collect();
+    if star.len() > 2 {
+        star.sort_by(|&e, &f| by_angle(graph.heading(node, e), graph.heading(node, f)));
+    }
     star
 }
 

@@ -102,12 +102,15 @@ impl Arrangement {
             }
         }
         stretches.retain(|(edge, _)| edge[0] != edge[1]);
-        stretches.sort_unstable_by(|(e, p), (f, q)| {
-            e.cmp(f).then_with(|| match (p, q) {
-                (Some(p), Some(q)) => p.order(q),
-                _ => p.is_some().cmp(&q.is_some()),
-            })
-        });
+        let mut stretches = grouped(stretches, points.len(), |(edge, _)| edge[0] as usize);
+        for from_node in stretches.chunk_by_mut(|s, t| s.0[0] == t.0[0]) {
+            from_node.sort_unstable_by(|(e, p), (f, q)| {
+                e.cmp(f).then_with(|| match (p, q) {
+                    (Some(p), Some(q)) => p.order(q),
+                    _ => p.is_some().cmp(&q.is_some()),
+                })
+            });
+        }
         stretches.dedup();
         let mut made = Arrangement {
             points,
@@ -150,6 +153,25 @@ impl Arrangement {
             used[node - 1]
         });
     }
+}
+
+/// The same in the order of their keys, which are below `keys`: for keys of which each is on few, so
+/// that what is left to sort is short. O(n + keys).
+pub(super) fn grouped<T: Copy>(all: Vec<T>, keys: usize, key: impl Fn(&T) -> usize) -> Vec<T> {
+    let mut next = vec![0; keys + 1];
+    for it in &all {
+        next[key(it) + 1] += 1;
+    }
+    for k in 0..keys {
+        next[k + 1] += next[k];
+    }
+    let mut order = vec![0_u32; all.len()];
+    for (at, it) in (0..).zip(&all) {
+        let place: &mut usize = &mut next[key(it)];
+        order[*place] = at;
+        *place += 1;
+    }
+    order.iter().map(|&at| all[at as usize]).collect()
 }
 
 /// The different points in order, and for each given point its place there.

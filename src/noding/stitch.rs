@@ -5,6 +5,7 @@ use crate::geometry::crossing::along;
 use crate::geometry::point::Point;
 use crate::noding::arrangement::Arrangement;
 use crate::noding::arrangement::Piece;
+use crate::noding::arrangement::grouped;
 use crate::noding::hot::TileNodes;
 use crate::noding::tile::Segment;
 
@@ -34,7 +35,15 @@ pub fn stitch(domain: &Domain, tiles: Vec<TileNodes>) -> Arrangement {
         }
         points.extend(tile.points);
     }
-    stops.sort_unstable();
+    let mut first = vec![0];
+    for line in &domain.lines {
+        first.push(first[first.len() - 1] + line.points.len());
+    }
+    let segment = |it: &Stop| first[it.segment.line as usize] + it.segment.at as usize;
+    let mut stops = grouped(stops, first[first.len() - 1], segment);
+    for of_segment in stops.chunk_by_mut(|s, t| s.segment == t.segment) {
+        of_segment.sort_unstable();
+    }
     Arrangement::from_stretches(&points, stretches(domain, &stops))
 }
 

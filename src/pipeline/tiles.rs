@@ -71,7 +71,9 @@ pub(super) fn clean(
     let bands = (site.bands().par_iter())
         .map(|it| counted(cleanup::clean_band(&site, &met, it)))
         .collect();
-    cleanup::join(site, met, bands)
+    let joined = cleanup::join(&site, met, bands);
+    let (measured, threaded) = rayon::join(|| joined.measured(), || joined.threaded());
+    joined.cleaned(measured, threaded)
 }
 
 /// Walks all tiles in parallel and joins the walks into sub-domains.

@@ -275,7 +275,7 @@ proptest! {
         let made = site.districts().iter().map(|it| cleanup::clean_district(&site, it)).collect();
         let met = cleanup::meet(&site, made);
         let bands = site.bands().iter().map(|it| cleanup::clean_band(&site, &met, it)).collect();
-        let result = cleanup::join(site, met, bands);
+        let result = cleanup::finish(cleanup::join(&site, met, bands));
         let verdict = cleanup::check::check(&domain, &sizes, &usual(&domain), &input, &result);
         prop_assert_eq!(verdict, Ok(()));
     }
@@ -301,7 +301,7 @@ fn joined_backwards(site: cleanup::Site) -> cleanup::Cleaned {
         .map(|it| cleanup::clean_band(&site, &met, it))
         .collect();
     bands.reverse();
-    cleanup::join(site, met, bands)
+    cleanup::finish(cleanup::join(&site, met, bands))
 }
 
 /// The same on all cores.
@@ -315,7 +315,7 @@ fn joined_at_once(site: cleanup::Site) -> cleanup::Cleaned {
     let bands = bands
         .map(|it| cleanup::clean_band(&site, &met, it))
         .collect();
-    cleanup::join(site, met, bands)
+    cleanup::finish(cleanup::join(&site, met, bands))
 }
 
 /// A grid of streets, each drawn twice, over 3 km: enough for districts of the usual grain.
