@@ -155,6 +155,15 @@ const LARGE: f64 = 2.6;
 /// The same for its shortest side that is not on the outline: those are given.
 const LONG: f64 = 2.4;
 
+/// The worth of a side falls with the square of its length, for at a quarter of the size it should
+/// end: this is what a side of a quarter is worth. (Measured on four cities against a worth in
+/// proportion: the .1 % quantile of edges grows by 2 to 9 %, with the same mean shape.)
+const QUARTER: f64 = 0.6;
+
+/// But no side is worth a shape poorer than this: without such a floor, the least shapes of three
+/// cities fall by 14 to 36 %.
+const SPARED: f64 = 0.35;
+
 /// A quad is asked to be at most this many times as large as the edges around it: among edges a
 /// twentieth of the size nothing can be large, and trying costs a fifth of the time there.
 const COARSER: f64 = 2.0;
@@ -171,9 +180,10 @@ pub(crate) fn worth(kernel: &Kernel, quad: u32, size_m: f64) -> f64 {
         let scales = kernel.quads[quad as usize].map(|node| kernel.scale[node as usize]);
         let coarsest = scales.into_iter().fold(f64::INFINITY, f64::min);
         let size_m = size_m.min(COARSER / coarsest.sqrt());
+        let side = LONG * shortest_m / size_m;
         shape
             .min(LARGE * hydraulic_size_m(&corners) / size_m)
-            .min(LONG * shortest_m / size_m)
+            .min((side * side / QUARTER).max(side.min(SPARED)))
     } else {
         shape
     }
