@@ -46,7 +46,8 @@
 //!    need six sides; small loops are dropped.
 //! 5. `relax`: with frozen topology, nodes and edges push each other apart. Once everywhere, and
 //!    once more where a later step changed something.
-//! 6. `tips`: tips that are still acute get an edge across, and with it a fourth corner.
+//! 6. `tips`: tips that are still acute get an edge across, and with it a fourth corner. Triangles
+//!    that are still small are closed.
 //! 7. `audit`: everything is measured against the input again; `thread`: the edges of each line are
 //!    made one way from end to end; `leftovers`: what could not be had is named. Two halves that can
 //!    be done at once (`finish`). [`rooms`] looks afterwards whether a sub-domain with room for
@@ -306,6 +307,18 @@ const STUCK: Narrow = Narrow {
     end: 0.25,
     share: 1.0,
 };
+/// Triangles that relaxation could not open either. (Measured on five cities: the .1 % quantile of
+/// the time-step proxy grows by up to 8 %, that of edges by up to 14 %, and the 1 % quantile of
+/// shapes by up to .014; as late as this only the hopeless ones go, and the displacement that 99 %
+/// of the lines stay below grows by .003 of the size, .009 at most. Before relaxation with all of
+/// the tolerance, or up to .25 here, it grows more, for no more.)
+const HOPELESS: Thin = Thin {
+    width: 0.0,
+    triangle: 0.22,
+    reach: 0.5,
+    share: 1.0,
+    drops_loops: false,
+};
 /// What is left of acute tips when all has found its place. (Measured on five cities: up to 60
 /// degrees, the smallest cells of dense places are up to a sixth smaller; with .8 of the tolerance
 /// half of the gain is gone.)
@@ -365,6 +378,7 @@ fn make_room(graph: &mut Graph) {
     let relaxed = graph.touched.len();
     tips::blunt_tips(graph, &BLUNT, &graph.nodes());
     separate::separate(graph, &stuck, &graph.nodes());
+    collapse::collapse_thin(graph, &HOPELESS, &graph.nodes());
     simplify::simplify(graph, &SMOOTH, &graph.nodes_since(mark));
     // two nodes that became one may have left a wedge between their long edges
     wedges::divide_wedges(graph, &GENTLE.zip, &graph.nodes_since(mark));

@@ -40,11 +40,17 @@ pub fn apportion(edges: &[EdgeWish], count: u32) -> Vec<u32> {
     shares
 }
 
+/// Intervals more than this many times shorter than wished rule a solver's time step. (Measured on
+/// five cities: 1.3 does no better, and the fourth power for all makes more irregular nodes.)
+const TINY: f64 = 1.8;
+
 /// What `share` intervals cost on an edge: the square of how many times too short or too long they
-/// are. To halve an edge that is short already costs far more than to halve a long one.
+/// are, and the fourth power where they are tiny. To halve an edge that is short already costs far
+/// more than to halve a long one; parity rather takes a longer way around.
 fn cost(edge: &EdgeWish, share: u32) -> f64 {
     let share = f64::from(share);
-    (share / edge.goal).max(edge.goal / share).powi(2)
+    let (short, long) = (share / edge.goal, edge.goal / share);
+    short.max(long).powi(2) * (short / TINY).max(1.0).powi(2)
 }
 
 /// What the cheapest edge asks for one more interval when the curve has `count`; `None` if no edge

@@ -27,6 +27,13 @@ pub struct Score {
     pub worst_quad: u32,
 }
 
+/// Cells from this share of the wished size on cost a solver nothing that counts.
+const BRISK: f64 = 0.35;
+/// What a patch can lose if its least cell is smaller.
+const SLOW: f64 = 0.2;
+/// A least Jacobian below this is not traded for larger cells.
+const POOR: f64 = 0.3;
+
 impl Score {
     /// Measures a patch.
     pub(crate) fn of(patch: &Patch, visits: &Visits, loops: &Loops) -> Score {
@@ -67,16 +74,23 @@ impl Score {
     /// regularity, the time step and the number of quads decide: a wedge can be mapped with good
     /// corners and cells of half the size, but half again as many as wished lose all of the last.
     ///
+    /// Cells below [`BRISK`] lose more: fewer and larger quads with poorer corners are better then,
+    /// as long as no corner is [`POOR`]. (Measured on four cities: the .1 % quantile of the
+    /// time-step proxy grows by up to 2 %, and there are up to 1 % fewer quads, for up to .003 of
+    /// the 1 % quantile of shapes.)
+    ///
     /// Measured on six cities: a weight of .3 for the least and .3 for the mean lowers the least
     /// cell of a mesh (.21 to .13 in one) for .0005 of its mean.
     pub fn rank(&self) -> f64 {
         let least = self.least / self.bound.min(0.6);
+        let traded = if self.least < POOR { 0.0 } else { self.size };
         let room = (1.0 - 2.0 * (self.crowding - 1.0)).clamp(0.0, 1.0);
         0.4 * least.min(1.0)
             + 0.2 * self.mean
             + 0.2 * (1.0 - self.irregular)
             + 0.1 * self.size
             + 0.1 * room
+            - SLOW * (1.0 - traded / BRISK).max(0.0)
     }
 }
 

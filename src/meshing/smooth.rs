@@ -152,8 +152,19 @@ pub(crate) fn lift_worst(kernel: &mut Kernel, below: f64, size_m: f64) {
 /// quantile of shapes by up to .01.
 const LARGE: f64 = 2.6;
 
-/// The same for its shortest side that is not on the outline: those are given.
-const LONG: f64 = 2.4;
+/// The same for its shortest side that is not on the outline: those are given. (Measured on seven
+/// cities: 2.4 leaves two below a quarter of the size at the .1 % quantile of edges, 2.2 costs .003
+/// to .015 of the 1 % quantile of shapes.)
+const LONG: f64 = 2.3;
+
+/// The worth of a side falls with the square of its length, for at about a quarter of the size
+/// it should end: this is what such a side is worth. (Measured on four cities against a worth in
+/// proportion: the .1 % quantile of edges grows by 2 to 9 %, with the same mean shape.)
+const ENOUGH: f64 = 0.6;
+
+/// But no side is worth a shape poorer than this: without such a floor, the least shapes of three
+/// cities fall by 14 to 36 %.
+const SPARED: f64 = 0.35;
 
 /// A quad is asked to be at most this many times as large as the edges around it: among edges a
 /// twentieth of the size nothing can be large, and trying costs a fifth of the time there.
@@ -171,9 +182,10 @@ pub(crate) fn worth(kernel: &Kernel, quad: u32, size_m: f64) -> f64 {
         let scales = kernel.quads[quad as usize].map(|node| kernel.scale[node as usize]);
         let coarsest = scales.into_iter().fold(f64::INFINITY, f64::min);
         let size_m = size_m.min(COARSER / coarsest.sqrt());
+        let side = LONG * shortest_m / size_m;
         shape
             .min(LARGE * hydraulic_size_m(&corners) / size_m)
-            .min(LONG * shortest_m / size_m)
+            .min((side * side / ENOUGH).max(side.min(SPARED)))
     } else {
         shape
     }

@@ -11,6 +11,7 @@ use polder::geometry::grid::Grid;
 use polder::geometry::point::Point;
 use polder::intervals;
 use polder::intervals::apportion::apportion;
+use polder::intervals::apportion::next_cost;
 use polder::intervals::wish::EdgeWish;
 use polder::parity;
 use proptest::prelude::*;
@@ -91,9 +92,19 @@ fn least_cost(edges: &[EdgeWish], count: u32) -> f64 {
 }
 
 fn cost(edge: &EdgeWish, n: u32) -> f64 {
-    (f64::from(n) / edge.goal)
-        .max(edge.goal / f64::from(n))
-        .powi(2)
+    match f64::from(n) / edge.goal {
+        times if times < 1.0 => 1.0 / times.powi(2),
+        times if times < 1.8 => times.powi(2),
+        times => times.powi(4) / 1.8_f64.powi(2),
+    }
+}
+
+/// Parity changes seven edges of the size before it halves one of two fifths.
+#[test]
+fn to_halve_a_short_edge_costs_more_than_a_long_way_around() {
+    let price = |goal: f64| next_cost(&[free(goal)], 1).unwrap();
+    assert!(price(0.4) > 7.0 * price(1.0));
+    assert!(price(0.4) > 3.0 * price(0.6));
 }
 
 proptest! {

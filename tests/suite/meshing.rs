@@ -14,6 +14,7 @@ use polder::meshing::mesh;
 use polder::meshing::patch::Loops;
 use polder::meshing::patch::Method;
 use polder::meshing::patch::Patch;
+use polder::meshing::score::Score;
 
 const ALL: [Method; 4] = [
     Method::Mapping,
@@ -139,6 +140,24 @@ fn wedges_are_not_filled_with_small_cells() {
     let meshed = verify("wedge", &draw.loops(10.0), &ALL);
     assert!(meshed.score.crowding < 1.2, "{:?}", meshed.score);
     assert!(meshed.score.mean > 0.97, "{:?}", meshed.score);
+}
+
+/// Two quads with poor corners are better than four small ones; not at the price of a sliver.
+#[test]
+fn small_cells_lose_unless_the_larger_ones_are_slivers() {
+    let score = |least: f64, size: f64| Score {
+        least,
+        mean: 0.7,
+        irregular: 0.2,
+        size,
+        crowding: 1.0,
+        bound: 1.0,
+        worst_quad: 0,
+    };
+    assert!(score(0.42, 0.34).rank() > score(0.55, 0.18).rank());
+    assert!(score(0.28, 0.34).rank() < score(0.32, 0.18).rank());
+    // where no cell is small, shape decides
+    assert!(score(0.42, 0.7).rank() < score(0.55, 0.4).rank());
 }
 
 #[test]
