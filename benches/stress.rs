@@ -16,7 +16,10 @@ use polder::meshing::patch::Loops;
 use polder::meshing::patch::Method;
 use std::panic::catch_unwind;
 use std::process::ExitCode;
+use std::sync::atomic::AtomicU64;
+use std::sync::atomic::Ordering;
 use std::thread;
+use std::time::Duration;
 use std::time::Instant;
 
 #[global_allocator]
@@ -149,9 +152,13 @@ fn edges(loops: &Loops) -> usize {
     loops.walks.iter().map(Vec::len).sum()
 }
 
+/// Seconds after which a sub-domain is taken for one without an end.
+const ENDLESS_S: u64 = 120;
+
 /// Meshes `count` cases of `draw` on two threads, one with the even seeds from `first` on, one with
-/// the odd ones.
+/// the odd ones. Ends the process if one of them finds no end.
 fn run(draw: fn(u64) -> Loops, name: &str, first: u64, count: u64) -> bool {
+    static AT_HAND: [AtomicU64; 2] = [AtomicU64::new(0), AtomicU64::new(0)];
     let half = |parity: u64| {
         move || {
             let mut tally = Tally::default();
@@ -160,6 +167,7 @@ fn run(draw: fn(u64) -> Loops, name: &str, first: u64, count: u64) -> bool {
                 let seed = seeds.next().expect("seeds do not end");
                 let loops = draw(seed);
                 if edges(&loops) <= MOST_EDGES {
+                    AT_HAND[parity as usize].store(seed, Ordering::Relaxed);
                     tally.add(&format!("seed {seed}"), &loops);
                 }
             }
@@ -167,6 +175,19 @@ fn run(draw: fn(u64) -> Loops, name: &str, first: u64, count: u64) -> bool {
         }
     };
     let threads = [0, 1].map(|parity| thread::spawn(half(parity)));
+    let mut since = [(0, Instant::now()); 2];
+    while threads.iter().any(|thread| !thread.is_finished()) {
+        thread::sleep(Duration::from_millis(20));
+        for (k, (seed, start)) in since.iter_mut().enumerate() {
+            let now = AT_HAND[k].load(Ordering::Relaxed);
+            if now != *seed {
+                (*seed, *start) = (now, Instant::now());
+            } else if !threads[k].is_finished() && start.elapsed().as_secs() > ENDLESS_S {
+                eprintln!("{name}, seed {seed}: no end after {ENDLESS_S} s");
+                std::process::exit(1);
+            }
+        }
+    }
     let mut all = Tally::default();
     for thread in threads {
         all.join(&thread.join().expect("panics are caught"));

@@ -143,10 +143,14 @@ impl Kernel {
             edges.push((u64::from(a.min(b)) << 32 | u64::from(a.max(b)), side));
         }
         edges.sort_unstable();
-        for pair in edges.windows(2) {
-            if pair[0].0 == pair[1].0 {
-                self.set_twin(pair[0].1, pair[1].1);
-                self.set_twin(pair[1].1, pair[0].1);
+        for same in edges.chunk_by(|p, q| p.0 == q.0) {
+            // Two nodes with several edges between them: whose twin is whose cannot be said. Without
+            // twins they are outline, and the check of the promises refuses the patch.
+            if let &[(_, side), (_, twin)] = same
+                && self.start(side) == self.end(twin)
+            {
+                self.set_twin(side, twin);
+                self.set_twin(twin, side);
             }
         }
     }

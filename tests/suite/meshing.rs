@@ -68,6 +68,13 @@ fn an_odd_hole_is_not_filled() {
     verify("fair 2636", &cases::fair(2636), &ALL);
 }
 
+/// An edit may join two nodes that an edge joins already; read again, the sides of the two were
+/// twins of each other in a ring without an outline, and the walk around a node found no end.
+#[test]
+fn several_edges_between_two_nodes_are_no_ring() {
+    verify("cruel 22502", &cases::cruel(22502), &ALL);
+}
+
 #[test]
 fn cruel_shapes_keep_all_promises() {
     let mut with_holes = 0;
