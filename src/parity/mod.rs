@@ -90,15 +90,15 @@
 //!
 //! # Cost
 //! Near-linear in curves; about 240 bytes a curve at the peak. Parity alone is one matching and HiGHS'
-//! turn: proven optimal in 0.1 s of CPU for 10 thousand sub-domains, 2 to 15 s for 100 thousand (HiGHS
-//! spends it on one part of 47 thousand rows), 10 to 40 s for a million. Patterns are some four to eight more on the same graph and the relaxation, which is worth two
+//! turn: proven optimal in 0.1 s of CPU for 10 thousand sub-domains, 1 to 22 s for 100 thousand (20 of them HiGHS
+//! on one part of 52 thousand rows), 13 to 24 s for a million. Patterns are some four to eight more on the same graph and the relaxation, which is worth two
 //! of them. `benches/README.md` has the measurements, HiGHS on the plain form beside them.
 //!
 //! # Stability
 //! One moved line changes few counts far away, but not none: the optimum is one of the whole city, and
 //! where half of all sub-domains are odd a chain of exchanges that cost next to nothing may go far.
-//! Of real curves more than five sub-domains away from a moved line three to four in a thousand change
-//! (bench `stability`), with patterns or without, which no small price undoes, as clean-up bends lines
+//! Of real curves more than five sub-domains away from a moved line two in a thousand change, five
+//! at worst (bench `stability`), with patterns or without, which no small price undoes, as clean-up bends lines
 //! that far. Goals and costs are local (`intervals`).
 //!
 //! With earlier counts ([`balance_near`]) each curve keeps its own or takes the best one, and a change
