@@ -103,12 +103,9 @@ fn verify(frame: &FrameView, given: &CertificateView, promise: &mut Promise) {
         Some(_) => "spent on patterns, share",
         None => "gap",
     };
-    let claimed = match given.solved.claimed {
-        Some(claimed) => format!("bound {bound} (HiGHS: {:.0})", claimed / unit),
-        None => format!("bound {bound}"),
-    };
+    let claimed = given.solved.beside_bound(unit);
     promise.says(format!(
-        "objective {objective}, {claimed}, free rounding {base} (units of {unit:e}); {beyond} {gap:.6}"
+        "objective {objective}, bound {bound}{claimed}, free rounding {base} (units of {unit:e}); {beyond} {gap:.6}"
     ));
 }
 

@@ -53,10 +53,7 @@ pub(crate) fn check(mesh: &Mesh) -> Promise {
             }
             let gap =
                 (found.total - found.bound) as f64 / (found.total - certificate.base).max(1) as f64;
-            let claimed = match given.solved.claimed {
-                Some(claimed) => format!(" (HiGHS: {:.0})", claimed / certificate.cost_unit),
-                None => String::new(),
-            };
+            let claimed = given.solved.beside_bound(certificate.cost_unit);
             promise.says(format!(
                 "{} of {} few-sided sub-domains fit a pattern; cost and price {}, bound {}{claimed}; gap {gap:.6}",
                 found.mapped,

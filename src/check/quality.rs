@@ -4,6 +4,7 @@
 //! of fixed width (their resolution is said with each), extremes are exact.
 
 use crate::check::seam_rows::SeamRows;
+use crate::check::seam_rows::a_row_on;
 use crate::chunk::views::FrameView;
 use crate::chunk::views::PatchView;
 use crate::geometry::point::Xy;
@@ -290,7 +291,9 @@ impl<'a> Measuring<'a> {
         let size_m = self.frame.size_m[patch.subdomain as usize];
         self.inside.clear();
         self.inside.resize(patch.nodes(), 0);
-        let beside = beside_lines(patch);
+        let mut on_line = vec![true; patch.boundary.len()];
+        on_line.resize(patch.nodes(), false);
+        let beside = a_row_on(patch, &on_line);
         let near_seams = self.seam_rows.near(patch);
         let mut share = self.quality.methods[usize::from(patch.method).min(4)];
         for quad in patch.quads {
@@ -417,20 +420,4 @@ fn keep(
     let at = list.partition_point(|it| measure(it) <= value);
     list.insert(at, place());
     list.truncate(WORST);
-}
-
-/// For each node of a patch, whether it is on the outline or in a cell with a node that is.
-fn beside_lines(patch: &PatchView) -> Vec<bool> {
-    let on_line = |node: u32| (node as usize) < patch.boundary.len();
-    let mut beside = vec![false; patch.nodes()];
-    for quad in patch
-        .quads
-        .iter()
-        .filter(|quad| quad.iter().any(|&it| on_line(it)))
-    {
-        for &node in quad {
-            beside[node as usize] = true;
-        }
-    }
-    beside
 }

@@ -32,22 +32,28 @@ impl SeamRows {
 
     /// For each node of a patch, whether a cell with it is beside a seam; `None` if no seam is on it.
     pub fn near(&self, patch: &PatchView) -> Option<Vec<bool>> {
-        let mut near: Vec<bool> = (patch.boundary.iter())
-            .map(|&id| self.on_seam[id as usize])
-            .collect();
-        if !near.contains(&true) {
+        let is_on_seam = |&id: &u32| self.on_seam[id as usize];
+        if !patch.boundary.iter().any(is_on_seam) {
             return None;
         }
+        let mut near: Vec<bool> = patch.boundary.iter().map(is_on_seam).collect();
         near.resize(patch.nodes(), false);
         for _ in 1..ROWS {
-            let reached = (patch.quads.iter())
-                .filter(|quad| quad.iter().any(|&node| near[node as usize]))
-                .flatten();
-            let reached: Vec<u32> = reached.copied().collect();
-            for node in reached {
-                near[node as usize] = true;
-            }
+            near = a_row_on(patch, &near);
         }
         Some(near)
     }
+}
+
+/// For each node of a patch, whether it is in a cell with one of these nodes.
+pub(crate) fn a_row_on(patch: &PatchView, these: &[bool]) -> Vec<bool> {
+    let mut reached = vec![false; patch.nodes()];
+    for quad in patch.quads {
+        if quad.iter().any(|&node| these[node as usize]) {
+            for &node in quad {
+                reached[node as usize] = true;
+            }
+        }
+    }
+    reached
 }

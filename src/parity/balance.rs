@@ -58,6 +58,16 @@ pub struct Solved {
     pub claimed: Option<f64>,
 }
 
+impl Solved {
+    /// What it claims, for a sentence after the bound: in whole units, or nothing.
+    pub fn beside_bound(&self, unit: f64) -> String {
+        match self.claimed {
+            Some(claimed) => format!(" (HiGHS: {:.0})", claimed / unit),
+            None => String::new(),
+        }
+    }
+}
+
 /// What was done so that the counts of blocks fit patterns, with a bound of its own.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Structure {

@@ -90,9 +90,10 @@
 //!
 //! # Cost
 //! Near-linear in curves; about 240 bytes a curve at the peak. Parity alone is one matching and HiGHS'
-//! turn: proven optimal in 0.1 s of CPU for 10 thousand sub-domains, 1 to 22 s for 100 thousand (20 of them HiGHS
-//! on one part of 52 thousand rows), 13 to 24 s for a million. Patterns are some four to eight more on the same graph and the relaxation, which is worth two
-//! of them. `benches/README.md` has the measurements, HiGHS on the plain form beside them.
+//! turn: proven optimal in 0.1 s of CPU for 10 thousand sub-domains, 1 to 22 s for 100 thousand (20 of
+//! them HiGHS on one part of 52 thousand rows), 13 to 24 s for a million. Patterns are some four to
+//! eight more on the same graph and the relaxation, which is worth two of them. `benches/README.md` has
+//! the measurements, HiGHS on the plain form beside them.
 //!
 //! # Stability
 //! One moved line changes few counts far away, but not none: the optimum is one of the whole city, and
@@ -189,7 +190,12 @@ pub fn balance_near(
     let programme = Programme::new(partition, goals, None)?;
     let base = programme.base;
     let graph = &programme.graph;
-    let (join, solved) = solved_join(graph, base, options);
+    let (join, solved) = solve(
+        graph,
+        base,
+        minimum_join(graph, options.events_max),
+        options,
+    );
     let mut balance = Balance {
         events: join.events,
         solved,
@@ -248,16 +254,11 @@ pub fn minimum_join(graph: &Graph, events_max: u64) -> Join {
     }
 }
 
-/// The same as HiGHS solves it from there: its choice, if that is even and no dearer. `base` is what
+/// The same as HiGHS solves it from `join`: its choice, if that is even and no dearer. `base` is what
 /// is decided outside, for what it claims.
-pub fn solved_join(graph: &Graph, base: i64, options: &Options) -> (Join, Solved) {
-    let mut join = minimum_join(graph, options.events_max);
+pub fn solve(graph: &Graph, base: i64, mut join: Join, options: &Options) -> (Join, Solved) {
     let gap2 = 2 * join.weight(graph) - join.cuts.bound2();
-    let limits = solver::Limits {
-        rows_max: options.rows_max,
-        nodes_max: options.nodes_max,
-    };
-    let (taken, mut solved) = solver::solve(graph, &join.cuts, &join.chosen, gap2, limits);
+    let (taken, mut solved) = solver::solve(graph, &join.cuts, &join.chosen, gap2, options);
     solved.claimed = (solved.claimed).map(|claimed| (base as f64 + claimed) * COST_UNIT);
     if let Some(chosen) = join::within(graph, &join.cuts, &taken)
         && weight(graph, &chosen) <= join.weight(graph)

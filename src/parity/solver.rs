@@ -11,6 +11,7 @@
 //! basis. If in the end something is in pieces, whole numbers are asked for, with `sum of x around v = 2 k_v`
 //! or `2 k_v + 1`, and the matching's choice as the start of branch and bound.
 
+use crate::parity::Options;
 use crate::parity::balance::Solved;
 use crate::parity::cuts::Cuts;
 use crate::parity::graph::Edge;
@@ -27,23 +28,14 @@ use highs::RowProblem;
 use highs::Sense;
 use highs::SolvedModel;
 
-/// Rows of small parts that are solved together: fewer are no faster for HiGHS.
-const ROWS_TOGETHER: usize = 2000;
+/// Rows of small parts that are solved together, so that HiGHS is not begun anew for every few.
+const ROWS_TOGETHER: u32 = 2000;
 
-/// Times that rows are added to a part; three have been enough everywhere but in tests.
+/// Times that rows are added to a part, a limit of work; then it is branched on.
 const ROUNDS_MAX: u32 = 50;
 
 /// What HiGHS takes for nothing.
 const NOTHING: f64 = 1e-6;
-
-/// Limits of work.
-#[derive(Clone, Copy, Debug)]
-pub struct Limits {
-    /// Rows of a part above which it is left.
-    pub rows_max: u32,
-    /// Branch-and-bound nodes a part.
-    pub nodes_max: i32,
-}
 
 /// Solves part by part. Returns the edges that the solution takes, those of `start` in parts that are
 /// left (too large, or not solved within the limits), and what HiGHS says. Not to be trusted.
@@ -52,17 +44,18 @@ pub fn solve(
     cuts: &Cuts,
     start: &[bool],
     slack2_max: i64,
-    limits: Limits,
+    options: &Options,
 ) -> (Vec<bool>, Solved) {
     let mut taken = start.to_vec();
     let mut said = Solved {
         claimed: Some(0.0),
         ..Solved::default()
     };
-    for part in parts(graph, cuts, slack2_max, ROWS_TOGETHER) {
+    let together = ROWS_TOGETHER.min(options.rows_max) as usize;
+    for part in parts(graph, cuts, slack2_max, together) {
         said.parts += 1;
-        let found = match part.sets.len() <= limits.rows_max as usize {
-            true => Local::of(graph, cuts, start, &part).solve(limits.nodes_max, &mut said),
+        let found = match part.sets.len() <= options.rows_max as usize {
+            true => Local::of(graph, cuts, start, &part).solve(options.nodes_max, &mut said),
             false => None,
         };
         let Some((values, claimed)) = found else {
@@ -121,18 +114,24 @@ impl Local {
         }
     }
 
-    /// The values of the columns and the optimum that HiGHS claims; `None` if it comes to no end.
-    fn solve(&mut self, nodes_max: i32, said: &mut Solved) -> Option<(Vec<f64>, f64)> {
-        let (mut problem, columns) = (RowProblem::default(), self.edges.iter());
-        let columns: Vec<Col> = columns
-            .map(|edge| problem.add_column(edge.weight as f64, 0..))
+    /// A column for each edge, a row for each set.
+    fn programme(
+        &self,
+        add_column: impl Fn(&mut RowProblem, f64) -> Col,
+    ) -> (RowProblem, Vec<Col>) {
+        let mut problem = RowProblem::default();
+        let columns: Vec<Col> = (self.edges.iter())
+            .map(|edge| add_column(&mut problem, edge.weight as f64))
             .collect();
         for row in &self.rows {
-            problem.add_row(
-                1..,
-                row.iter().map(|&column| (columns[column as usize], 1.0)),
-            );
+            problem.add_row(1.., terms(row, &columns));
         }
+        (problem, columns)
+    }
+
+    /// The values of the columns and the optimum that HiGHS claims; `None` if it comes to no end.
+    fn solve(&mut self, nodes_max: i32, said: &mut Solved) -> Option<(Vec<f64>, f64)> {
+        let (problem, columns) = self.programme(|problem, weight| problem.add_column(weight, 0..));
         let mut model = model_of(problem, nodes_max)?;
         for _ in 0..ROUNDS_MAX {
             let (solved, values) = solution(model)?;
@@ -145,8 +144,7 @@ impl Local {
             }
             model = solved.into();
             for row in missing {
-                let terms = row.iter().map(|&column| (columns[column as usize], 1.0));
-                model.try_add_row(1.., terms).ok()?;
+                model.try_add_row(1.., terms(&row, &columns)).ok()?;
                 self.rows.push(row);
                 said.added += 1;
             }
@@ -186,16 +184,8 @@ impl Local {
 
     /// The same in whole numbers.
     fn branch(&self, nodes_max: i32) -> Option<(Vec<f64>, f64)> {
-        let (mut problem, columns) = (RowProblem::default(), self.edges.iter());
-        let columns: Vec<Col> = columns
-            .map(|edge| problem.add_integer_column(edge.weight as f64, 0..=1))
-            .collect();
-        for row in &self.rows {
-            problem.add_row(
-                1..,
-                row.iter().map(|&column| (columns[column as usize], 1.0)),
-            );
-        }
+        let (mut problem, columns) =
+            self.programme(|problem, weight| problem.add_integer_column(weight, 0..=1));
         let mut around = vec![Vec::new(); self.odd.len() + 1];
         let mut begun = vec![0.0; self.odd.len() + 1];
         let starts = self.start.iter().map(|&taken| f64::from(u8::from(taken)));
@@ -221,6 +211,11 @@ impl Local {
         values.truncate(self.edges.len());
         Some((values, solved.objective_value()))
     }
+}
+
+/// The sum of some columns.
+fn terms(row: &[u32], columns: &[Col]) -> impl Iterator<Item = (Col, f64)> {
+    row.iter().map(|&column| (columns[column as usize], 1.0))
 }
 
 fn model_of(problem: RowProblem, nodes_max: i32) -> Option<Model> {

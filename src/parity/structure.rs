@@ -8,10 +8,10 @@
 //! by neighbourhood.
 
 use crate::intervals::goals::Goals;
+use crate::parity::Join;
 use crate::parity::Options;
 use crate::parity::balance::Solved;
 use crate::parity::balance::Structure;
-use crate::parity::cuts::Cuts;
 use crate::parity::draft::Draft;
 use crate::parity::draft::Places;
 use crate::parity::draft::halves_are_odd;
@@ -22,7 +22,7 @@ use crate::parity::programme::COST_UNIT;
 use crate::parity::programme::Programme;
 use crate::parity::programme::units;
 use crate::parity::relaxation::Start;
-use crate::parity::solved_join;
+use crate::parity::solve;
 use crate::parity::tilts::Rules;
 use crate::parity::tilts::Tilts;
 use crate::partition::subdomains::Partition;
@@ -47,7 +47,7 @@ const MEND_ROUNDS: u32 = 3;
 struct Proof {
     bound: i64,
     multipliers: Vec<i64>,
-    cuts: Cuts,
+    join: Join,
 }
 
 /// The counts that are best with the wishes of blocks, as far as this finds them, starting from the
@@ -86,7 +86,7 @@ pub fn fit_patterns(
             .proof
             .take()
             .expect("the first round proves something");
-        made.solved = climb.solve(&proof)?;
+        let proof = climb.solve(proof, &mut made.solved)?;
         best = climb.best;
         made.rounds = climb.rounds;
         let left = (best.total() - proof.bound) as f64;
@@ -102,7 +102,7 @@ pub fn fit_patterns(
         }
         made.bound = proof.bound as f64 * COST_UNIT;
         made.multipliers = proof.multipliers;
-        made.cuts = proof.cuts;
+        made.cuts = proof.join.cuts;
     }
     made.mapped = best.mapped();
     made.price = best.price() as f64 * COST_UNIT;
@@ -187,19 +187,20 @@ impl<'a> Climb<'a> {
             self.proof = Some(Proof {
                 bound,
                 multipliers,
-                cuts: join.cuts,
+                join,
             });
         }
         Ok((bound, raised, slope))
     }
 
     /// HiGHS solves the programme at the multipliers of the proof; its counts are one more candidate.
-    fn solve(&mut self, proof: &Proof) -> Result<Solved, Error> {
+    fn solve(&mut self, proof: Proof, solved: &mut Solved) -> Result<Proof, Error> {
         let tilts = Tilts::of(self.goals, self.rules, &proof.multipliers, self.worth);
         let programme = Programme::new(self.partition, self.goals, Some(&tilts))?;
-        let (join, solved) = solved_join(&programme.graph, programme.base, self.options);
+        let (join, said) = solve(&programme.graph, programme.base, proof.join, self.options);
+        *solved = said;
         self.consider(self.best.with_counts(programme.counts(&join.chosen)));
-        Ok(solved)
+        Ok(Proof { join, ..proof })
     }
 
     /// Takes what mended counts are the best.
