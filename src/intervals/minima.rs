@@ -7,6 +7,8 @@ use crate::intervals::sides::Walk;
 use crate::noding::arrangement::Arrangement;
 use crate::partition::subdomains::Partition;
 use crate::partition::subdomains::Subdomain;
+use crate::rungs::LONG;
+use crate::rungs::ONE_ROW;
 
 /// Counts that no sub-domain can do without: a quad has four sides.
 const LEAST_TOTAL: u32 = 4;
@@ -26,13 +28,25 @@ pub fn raise(
             // One node on a side of a triangle or a lune would make an element with a straight
             // angle at a corner; four and more sides carry quads with one interval each.
             if sides.len() == 2 || sides.len() == 3 {
-                for side in &sides {
-                    raise_side(goals, partition, side, 2);
+                for (k, side) in sides.iter().enumerate() {
+                    if !is_end_of_a_tip(goals, &sides, k) {
+                        raise_side(goals, partition, side, 2);
+                    }
                 }
             }
         }
         raise_total(goals, partition, subdomain);
     }
+}
+
+/// True for the side across the wide end of a long tip that has room for one row there: nearer to
+/// the tip, the other two sides have room enough to make it two.
+fn is_end_of_a_tip(goals: &Goals, sides: &[Side], side: usize) -> bool {
+    let wish = |k: usize| -> f64 {
+        let curves = sides[(side + k) % sides.len()].iter();
+        curves.map(|&(curve, _)| goals.goal[curve as usize]).sum()
+    };
+    sides.len() == 3 && wish(0) <= ONE_ROW && wish(1).min(wish(2)) >= LONG
 }
 
 /// Raises the longest free curve of a side until the side has `least` intervals for certain.

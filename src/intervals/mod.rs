@@ -7,7 +7,8 @@
 //!    change any other curve by one, up or down from some count within its bounds.
 //! 3. Every sub-domain's lower bounds sum to at least 4, a free line counted twice; a sub-domain
 //!    with one walk of two or three corners has at least 2 on each side, so that no corner's
-//!    element is flat (where a side is a part of one curve: on the curve as a whole).
+//!    element is flat (where a side is a part of one curve: on the curve as a whole). The wide end of a
+//!    long tip may have 1 (`rungs::ONE_ROW`, `rungs::LONG`).
 //! 4. Goals and bounds depend on a curve, its two sub-domains, the lines at its ends and the sizes, on
 //!    nothing else.
 //! 5. A rung beside a line whose kind wishes several rows has that many intervals at least, as far

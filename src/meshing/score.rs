@@ -30,7 +30,7 @@ pub struct Score {
 /// Cells from this share of the wished size on cost a solver nothing that counts.
 const BRISK: f64 = 0.35;
 /// What a patch can lose if its least cell is smaller.
-const SLOW: f64 = 0.2;
+const SLOW: f64 = 0.4;
 /// A least Jacobian below this is not traded for larger cells.
 const POOR: f64 = 0.3;
 
@@ -75,8 +75,8 @@ impl Score {
     /// corners and cells of half the size, but half again as many as wished lose all of the last.
     ///
     /// Cells below [`BRISK`] lose more: fewer and larger quads with poorer corners are better then,
-    /// as long as no corner is [`POOR`]. (Measured on four cities: the .1 % quantile of the
-    /// time-step proxy grows by up to 2 %, and there are up to 1 % fewer quads, for up to .003 of
+    /// as long as no corner is [`POOR`]. (Measured on six cities: the .1 % quantile of the
+    /// time-step proxy grows by up to 4 %, and there are up to 1 % fewer quads, for up to .008 of
     /// the 1 % quantile of shapes.)
     ///
     /// Measured on six cities: a weight of .3 for the least and .3 for the mean lowers the least

@@ -8,8 +8,11 @@ use crate::partition::subdomains::Partition;
 use crate::rungs::ANGLE_DEG;
 use crate::rungs::CLEAR;
 use crate::rungs::CORNERS;
+use crate::rungs::LONG;
 use crate::rungs::LONGEST_WALK;
+use crate::rungs::ONE_ROW;
 use crate::rungs::Options;
+use crate::rungs::RUN_ON;
 use crate::rungs::SHORTEST;
 use crate::rungs::SNAP;
 use crate::rungs::propose::Candidate;
@@ -34,6 +37,8 @@ pub(super) struct Ladder<'a> {
     /// Size at each edge as given, and its least at each node, cells.
     size_of: &'a [f64],
     size_at: Vec<f64>,
+    /// The edge as given that each foot lies on, from the first node that was not given.
+    split_at: Vec<u32>,
     options: Options,
     /// Ends of the rungs, and the rungs by place.
     laid: Vec<[u32; 2]>,
@@ -49,6 +54,15 @@ enum Foot {
     Node(u32),
     /// Within an edge, which the half-edge has on the rung's side.
     Within(u32),
+}
+
+/// A walk that a rung would close.
+#[derive(Clone, Copy)]
+struct Closed {
+    /// Its angles at the rung, radians.
+    ends: [f64; 2],
+    /// What its first and its last half-edge have beyond the rung, cells.
+    beyond: [f64; 2],
 }
 
 impl<'a> Ladder<'a> {
@@ -71,6 +85,7 @@ impl<'a> Ladder<'a> {
             walls: Buckets::of(arrangement, 2 * largest as i32),
             size_of,
             size_at,
+            split_at: Vec::new(),
             options: *options,
             laid: Vec::new(),
             placed: Buckets::new(2 * largest as i32),
@@ -85,7 +100,26 @@ impl<'a> Ladder<'a> {
 
     /// Longest rung at a node, cells.
     pub fn reach(&self, node: u32) -> f64 {
-        self.options.longest * self.size_at[node as usize]
+        self.longest(node) * self.size_at[node as usize]
+    }
+
+    /// The same in sizes.
+    fn longest(&self, node: u32) -> f64 {
+        match self.split_edge(node) {
+            Some(_) => RUN_ON.min(self.options.longest),
+            None => self.options.longest,
+        }
+    }
+
+    /// The edge as given that a foot has split.
+    fn split_edge(&self, node: u32) -> Option<u32> {
+        let foot = (node as usize).checked_sub(self.arrangement.points.len())?;
+        Some(self.split_at[foot])
+    }
+
+    /// True if a node is an end of an edge as given, or a foot on it.
+    pub fn is_at(&self, node: u32, edge: u32) -> bool {
+        self.arrangement.edges[edge as usize].contains(&node) || self.split_edge(node) == Some(edge)
     }
 
     /// Lays the candidate's rung if it keeps the promises.
@@ -93,15 +127,15 @@ impl<'a> Ladder<'a> {
         let Candidate { node, edge, .. } = candidate;
         let at = self.web.points[node as usize];
         let mut size = self.size_at[node as usize].min(self.size_of[edge as usize]);
+        let mut longest = self.longest(node);
         let part = self.nearest_part(at, edge);
         let (to, foot) = self.foot(at, part, SNAP * size);
-        if let Foot::Node(target) = foot
-            && let Some(&there) = self.size_at.get(target as usize)
-        {
-            size = size.min(there);
+        if let Foot::Node(target) = foot {
+            size = size.min(self.size_at[target as usize]);
+            longest = longest.min(self.longest(target));
         }
         let length = at.distance(to);
-        if length < SHORTEST * size || length > self.options.longest * size {
+        if length < SHORTEST * size || length > longest * size {
             return;
         }
         let Some(from) = self.roomy_corner(node, to) else {
@@ -110,7 +144,13 @@ impl<'a> Ladder<'a> {
         let Some(into) = self.foot_corner(node, foot, to) else {
             return;
         };
-        if !self.closes_blocks(&from, foot, &into) || !self.is_clear(candidate, to, foot, size) {
+        let tip = match length <= ONE_ROW * size {
+            true => LONG * size,
+            false => f64::INFINITY,
+        };
+        if !self.closes_blocks(&from, foot, to, &into, tip)
+            || !self.is_clear(candidate, to, foot, size)
+        {
             return;
         }
         let (target, into) = match foot {
@@ -119,6 +159,8 @@ impl<'a> Ladder<'a> {
                 let split = self.web.split(half, to);
                 let parts = self.parts.entry(edge).or_insert_with(|| vec![edge]);
                 parts.push(split.second);
+                self.split_at.push(edge);
+                self.size_at.push(self.size_of[edge as usize]);
                 (split.node, split.after)
             }
         };
@@ -185,37 +227,60 @@ impl<'a> Ladder<'a> {
         }
     }
 
-    /// True if the walks that the rung would close have corners enough, or if it joins two walks.
-    fn closes_blocks(&self, from: &Corner, foot: Foot, into: &Corner) -> bool {
-        let stop = match foot {
-            Foot::Node(_) => into.out,
-            Foot::Within(half) => self.web.next[half as usize],
+    /// True if the walks that the rung would close have corners enough, or if it joins two walks. A
+    /// walk of three will do if its other sides are `tip` or longer.
+    fn closes_blocks(&self, from: &Corner, foot: Foot, to: Point, into: &Corner, tip: f64) -> bool {
+        let (stop, parts) = match foot {
+            Foot::Node(_) => (into.out, [0.0; 2]),
+            Foot::Within(half) => {
+                let ends = self.web.ends(half >> 1);
+                let behind = ends[(half & 1) as usize].distance(to);
+                let next = self.web.next[half as usize];
+                (next, [behind, self.web.length(half) - behind])
+            }
         };
-        let ahead = [from.after_rad, into.before_rad];
-        let back = [from.before_rad, into.after_rad];
-        self.is_block(into.out, from.out, ahead) && self.is_block(from.out, stop, back)
+        let ahead = Closed {
+            ends: [from.after_rad, into.before_rad],
+            beyond: [parts[0], 0.0],
+        };
+        let back = Closed {
+            ends: [from.before_rad, into.after_rad],
+            beyond: [0.0, parts[1]],
+        };
+        self.is_block(into.out, from.out, ahead, tip) && self.is_block(from.out, stop, back, tip)
     }
 
-    /// Counts corners from the half-edge `first` until the one before `stop`; `ends` are the angles
-    /// at the rung. A walk that comes back without meeting `stop` is another one than the rung's
-    /// other end lies on: the rung joins the two.
-    fn is_block(&self, first: u32, stop: u32, ends: [f64; 2]) -> bool {
+    /// Follows the walk from the half-edge `first` until the one before `stop`. One that comes back
+    /// without meeting `stop` is another one than the rung's other end lies on: the rung joins the
+    /// two.
+    fn is_block(&self, first: u32, stop: u32, closed: Closed, tip: f64) -> bool {
         let flattest = PI - self.options.corner_deg.to_radians();
         let is_corner = |angle: f64| angle < flattest;
-        let mut corners = ends.iter().filter(|&&angle| is_corner(angle)).count();
+        let at_ends = (closed.ends.iter())
+            .filter(|&&angle| is_corner(angle))
+            .count();
+        let mut corners = at_ends;
         let mut half = first;
+        let mut side = self.web.length(first) - closed.beyond[0];
+        let mut shortest = f64::INFINITY;
         for _ in 0..LONGEST_WALK {
             if corners >= CORNERS {
                 return true;
             }
             half = self.web.next[half as usize];
             if half == stop {
-                return false;
+                let shortest = shortest.min(side - closed.beyond[1]);
+                return at_ends == 2 && corners + 1 == CORNERS && shortest >= tip;
             }
             if half == first {
                 return true;
             }
-            corners += usize::from(is_corner(self.web.angle_rad(half)));
+            if is_corner(self.web.angle_rad(half)) {
+                corners += 1;
+                shortest = shortest.min(side);
+                side = 0.0;
+            }
+            side += self.web.length(half);
         }
         false
     }
@@ -226,16 +291,18 @@ impl<'a> Ladder<'a> {
         let rung = [self.web.points[node as usize], to];
         let clear = CLEAR * size;
         let split = matches!(foot, Foot::Within(_));
-        let touches = |other: u32| match foot {
-            Foot::Node(target) => other == node || other == target,
-            Foot::Within(_) => other == node,
+        let target = match foot {
+            Foot::Node(target) => Some(target),
+            Foot::Within(_) => None,
         };
-        let is_apart = |ends: [u32; 2]| {
-            let there = ends.map(|it| self.web.points[it as usize]);
-            touches(ends[0]) || touches(ends[1]) || distance_between(rung, there) >= clear
+        let ends = || [Some(node), target].into_iter().flatten();
+        let is_apart = |others: [u32; 2]| {
+            let there = others.map(|it| self.web.points[it as usize]);
+            ends().any(|it| others.contains(&it)) || distance_between(rung, there) >= clear
         };
+        let is_touched = |it: u32| (split && it == edge) || ends().any(|end| self.is_at(end, it));
         let walls = self.walls.near(rung, clear);
-        let mut walls = walls.into_iter().filter(|&it| !(split && it == edge));
+        let mut walls = walls.into_iter().filter(|&it| !is_touched(it));
         walls.all(|it| is_apart(self.arrangement.edges[it as usize]))
             && (self.placed.near(rung, clear).into_iter())
                 .all(|it| is_apart(self.laid[it as usize]))

@@ -10,15 +10,17 @@
 //!
 //! # Promises
 //! 1. A rung is one edge without pieces between two nodes of lines, .25 to
-//!    [`Options::longest`] sizes long; the size is the least of the default and of those of the lines at its ends.
+//!    [`Options::longest`] sizes long; the size is the least of the default and of those of the lines
+//!    at its ends. From and to feet of other rungs it is no longer than [`RUN_ON`].
 //! 2. At both ends it leaves 50 degrees or more to each neighbour, and it keeps 0.3 sizes away from
 //!    every edge that it does not touch.
 //! 3. A line is split only at a rung's end, 0.4 sizes or more from the ends of its edge; it moves
 //!    by the rounding to the grid, less than a cell.
-//! 4. Each walk of up to [`LONGEST_WALK`] edges that a rung closes has four corners or more: no
-//!    rung cuts the tip of a wedge off, whose triangle would need two intervals on it. (Without
-//!    this, the 1 % quantile of the scaled Jacobian falls by .01 to .02, and the time-step proxy
-//!    by a quarter.)
+//! 4. Each walk of up to [`LONGEST_WALK`] edges that a rung closes has four corners or more, or it is a
+//!    long tip: the rung is short enough for one interval ([`ONE_ROW`]), and the other two of its three
+//!    sides are [`LONG`]. A lesser triangle would need two intervals on the rung. (Without this, the
+//!    1 % quantile of the scaled Jacobian falls by .01 to .02, and the time-step proxy by a quarter;
+//!    without long tips, both are up to 3 % less where streets meet at acute angles.)
 //! 5. Nodes, lines and tags are as before; the same input gives the same rungs.
 //!
 //! # Needs
@@ -91,6 +93,17 @@ pub const LONGEST_WALK: usize = 256;
 /// A block has at least so many corners.
 pub(crate) const CORNERS: usize = 4;
 
+/// The longest side across the wide end of a tip that is given one interval, sizes.
+pub const ONE_ROW: f64 = 0.75;
+
+/// The least length of the other two sides of a tip whose wide end has one interval, sizes: nearer
+/// to the tip the row becomes two, because a tip has one corner. Figures are the same from 2 to 6.
+pub const LONG: f64 = 3.0;
+
+/// The longest rung from a foot or to one, sizes. Measured on six cities: up to .8 there are more irregular
+/// nodes beside open country, and without any the mean of dense places is .002 less.
+pub const RUN_ON: f64 = 0.65;
+
 /// Lays rungs wherever they fit.
 pub fn lay(
     domain: &Domain,
@@ -107,9 +120,12 @@ pub fn lay(
     }
     let size_of = edge_sizes(domain, sizes, arrangement);
     let mut ladder = Ladder::new(arrangement, partition, &size_of, options);
-    // Feet of rungs are nodes of lines, too, but they get no rungs of their own: those would run on
-    // from line to line.
-    for candidate in propose(&ladder) {
+    let given = arrangement.points.len() as u32;
+    for candidate in propose(&ladder, 0..given) {
+        ladder.lay(candidate);
+    }
+    let feet = given..ladder.web.points.len() as u32;
+    for candidate in propose(&ladder, feet) {
         ladder.lay(candidate);
     }
     Runged {

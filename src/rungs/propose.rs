@@ -1,8 +1,9 @@
-//! Where rungs could be: from each node with room, the edges near it.
+//! Where rungs could be: from a node with room, the edges near it.
 
 use crate::geometry::point::Point;
 use crate::rungs::ANGLE_DEG;
 use crate::rungs::ladder::Ladder;
+use std::ops::Range;
 
 /// A possible rung: from a node to the nearest place on an edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,10 +15,10 @@ pub(super) struct Candidate {
     pub edge: u32,
 }
 
-/// All candidates, the shortest first.
-pub(super) fn propose(ladder: &Ladder) -> Vec<Candidate> {
+/// All candidates from these nodes, the shortest first.
+pub(super) fn propose(ladder: &Ladder, nodes: Range<u32>) -> Vec<Candidate> {
     let mut found = Vec::new();
-    for node in 0..ladder.arrangement.points.len() as u32 {
+    for node in nodes {
         if has_room(ladder, node) {
             propose_from(ladder, node, &mut found);
         }
@@ -42,7 +43,7 @@ fn propose_from(ladder: &Ladder, node: u32, found: &mut Vec<Candidate>) {
     let reach = ladder.reach(node);
     for edge in ladder.walls.near([at, at], reach) {
         let is_seam = ladder.arrangement.pieces_of(edge).is_empty();
-        if is_seam || ladder.arrangement.edges[edge as usize].contains(&node) {
+        if is_seam || ladder.is_at(node, edge) {
             continue;
         }
         let (_, length2) = nearest(at, ladder.web.ends(edge));

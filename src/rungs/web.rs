@@ -93,6 +93,12 @@ impl Web {
         self.tail[(half ^ 1) as usize]
     }
 
+    /// Its length, cells.
+    pub fn length(&self, half: u32) -> f64 {
+        let [a, b] = self.ends(half >> 1);
+        a.distance(b)
+    }
+
     /// The places of an edge's nodes.
     pub fn ends(&self, edge: u32) -> [Point; 2] {
         [0, 1].map(|k| self.points[self.tail[(2 * edge + k) as usize] as usize])

@@ -113,6 +113,23 @@ fn triangles_get_two_on_each_side() {
     assert_eq!(total, 10);
 }
 
+/// The wide end of a long tip has room for one row only.
+#[test]
+fn the_wide_end_of_a_long_tip_keeps_one() {
+    let wedge = [(0, 0), (100, 0), (100, 20), (0, 0)];
+    let total = |size: f64| {
+        planned(&wedge, &[], [size, size])
+            .1
+            .lower
+            .iter()
+            .sum::<u32>()
+    };
+    assert_eq!(total(30.0), 5);
+    // The sides are too short for it, or the end is not.
+    assert_eq!(total(40.0), 6);
+    assert_eq!(total(20.0), 6);
+}
+
 #[test]
 fn small_squares_keep_one_on_each_side() {
     let (_, goals) = planned(&SQUARE, &[], [1000.0, 1000.0]);

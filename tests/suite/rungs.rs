@@ -94,8 +94,8 @@ fn lay_well(lines: &[(Role, Vec<At>)]) -> Laid {
     }
 }
 
-/// Promise 4, from the partition alone: walks with a rung on them have four corners, but if a rung
-/// has joined two walks, or if they are long.
+/// Promise 4, from the partition alone: walks with a rung on them have four corners, or three and
+/// two long sides, but if a rung has joined two walks, or if they are long.
 fn check_blocks(arrangement: &Arrangement, partition: &Partition) {
     for subdomain in &partition.subdomains {
         for walk in &subdomain.walks {
@@ -132,7 +132,22 @@ fn check_blocks(arrangement: &Arrangement, partition: &Partition) {
                 // A tip turns by half a circle, to the right as seen from inside.
                 turn > 30.0 - 0.2 && a != c
             };
-            assert!((0..n).filter(corner).count() >= 4, "a walk of {n} edges");
+            let corners: Vec<usize> = (0..n).filter(corner).collect();
+            if corners.len() == 3 {
+                let mut sides = [0, 1, 2].map(|k| {
+                    let last = if k == 2 {
+                        corners[0] + n
+                    } else {
+                        corners[k + 1]
+                    };
+                    let edges = corners[k]..last;
+                    edges.map(|it| at(it).distance(at(it + 1))).sum::<f64>() / 1000.0
+                });
+                sides.sort_by(f64::total_cmp);
+                let is_tip = sides[0] < rungs::ONE_ROW + 0.01 && sides[1] > rungs::LONG - 0.01;
+                assert!(is_tip, "a tip with sides of {sides:?}");
+            }
+            assert!(corners.len() >= 3, "a walk of {n} edges");
         }
     }
 }
@@ -224,15 +239,34 @@ fn rungs_cut_the_ring_around_a_building() {
     assert_eq!((made.rungs, made.after.subdomains.len()), (8, 8));
 }
 
-/// Any rung would close a triangle with the tip.
+/// A rung closes a triangle with the tip: it must be short, and the tip long.
 #[test]
-fn a_wedge_has_no_rungs() {
-    let mut wedge = vec![(0.0, 0.0)];
-    wedge.extend((1..6).map(|k| (f64::from(k) * 1.1, 0.0)));
-    wedge.push((6.0, 1.3));
-    let mut lines = vec![ring(Role::Boundary, &wedge)];
-    lines.extend((1..6).map(|k| line(&[(f64::from(k) * 1.1, 0.0), (f64::from(k) * 1.1, -0.1)])));
-    assert_eq!(lay_well(&lines).rungs, 0);
+fn a_wedge_has_rungs_far_from_its_tip_only() {
+    let rungs = |height: f64| {
+        let mut wedge = vec![(0.0, 0.0)];
+        wedge.extend((1..6).map(|k| (f64::from(k) * 1.1, 0.0)));
+        wedge.push((6.0, height));
+        let mut lines = vec![ring(Role::Boundary, &wedge)];
+        let stub = |k: i32| line(&[(f64::from(k) * 1.1, 0.0), (f64::from(k) * 1.1, -0.1)]);
+        lines.extend((1..6).map(stub));
+        lay_well(&lines).rungs
+    };
+    assert_eq!(rungs(1.2), 1);
+    assert_eq!(rungs(1.5), 0);
+}
+
+/// The foot of a rung is a node that faces nothing across the next strip: it gets one of its own
+/// where that is narrow, and the row runs on.
+#[test]
+fn feet_get_rungs_across_the_next_narrow_strip() {
+    let rungs = |width: f64| {
+        let mut lines = vec![rectangle(20.0, 10.5)];
+        lines.extend([5.0, 5.5, 5.5 + width].map(|y| line(&[(0.0, y), (20.0, y)])));
+        lines.push(line(&[(9.0, 0.0), (9.0, 5.0)]));
+        lay_well(&lines).rungs
+    };
+    assert_eq!(rungs(0.6), 2);
+    assert_eq!(rungs(0.7), 1);
 }
 
 /// A slit that ends shortly before a wall is prolonged to it.
