@@ -9,6 +9,7 @@ use crate::meshing::kernel::Kernel;
 use crate::meshing::patch::Loops;
 use crate::meshing::patch::Method;
 use crate::meshing::patch::Patch;
+use crate::meshing::regular::regularise;
 use crate::meshing::smooth::PERFECT;
 use crate::meshing::smooth::lift_worst;
 use crate::meshing::smooth::smooth_all;
@@ -39,6 +40,10 @@ const RESCUED: f64 = 0.5;
 /// mean and leaves the last percent behind. Measured on five cities: .75 for .3 raises the 1 %
 /// quantile by .02 to .04 for 5 % of the time.
 const LIFTED: f64 = 0.75;
+
+/// Sweeps over the irregular nodes for windows that a pattern fills better. Measured on two cities:
+/// the second takes out a tenth of those that the first leaves, a third none.
+const WINDOW_SWEEPS: usize = 2;
 
 /// Moves below these shares of the wished edge length do not matter while the topology still
 /// changes, and at the end. Measured: half of either changes the mean shape by less than .0005.
@@ -76,6 +81,7 @@ pub(crate) fn improve(draft: &mut Draft, visits: &Visits, size_m: f64) {
     cleaner.run(Pass::Valence, 6);
     cleaner.run(Pass::Rescue(RESCUED_FIRST), 3);
     smooth(&mut cleaner, 10, ROUGHLY);
+    regularise(&mut cleaner, WINDOW_SWEEPS);
     cleaner.forget();
     cleaner.run(Pass::Valence, 3);
     cleaner.run(Pass::Rescue(RESCUED), 3);
