@@ -41,10 +41,6 @@ const RESCUED: f64 = 0.5;
 /// quantile by .02 to .04 for 5 % of the time.
 const LIFTED: f64 = 0.75;
 
-/// Sweeps over the irregular nodes for windows that a pattern fills better. Measured on two cities:
-/// the second takes out a tenth of those that the first leaves, a third none.
-const WINDOW_SWEEPS: usize = 2;
-
 /// Moves below these shares of the wished edge length do not matter while the topology still
 /// changes, and at the end. Measured: half of either changes the mean shape by less than .0005.
 const ROUGHLY: f64 = 0.04;
@@ -73,6 +69,10 @@ pub(crate) fn finish(
 }
 
 /// Works on all quads that are not settled.
+///
+/// Windows are filled twice: when the valences have settled, which spares the later passes much of
+/// their work, and at the end. (Measured on two cities: two sweeps in the first place leave 5.12 and
+/// 1.29 % irregular nodes, one in either 4.99 and 1.27 % for the same time.)
 pub(crate) fn improve(draft: &mut Draft, visits: &Visits, size_m: f64) {
     let mut kernel = Kernel::of(draft, visits);
     wish(&mut kernel, size_m);
@@ -81,7 +81,7 @@ pub(crate) fn improve(draft: &mut Draft, visits: &Visits, size_m: f64) {
     cleaner.run(Pass::Valence, 6);
     cleaner.run(Pass::Rescue(RESCUED_FIRST), 3);
     smooth(&mut cleaner, 10, ROUGHLY);
-    regularise(&mut cleaner, WINDOW_SWEEPS);
+    regularise(&mut cleaner);
     cleaner.forget();
     cleaner.run(Pass::Valence, 3);
     cleaner.run(Pass::Rescue(RESCUED), 3);
@@ -94,6 +94,7 @@ pub(crate) fn improve(draft: &mut Draft, visits: &Visits, size_m: f64) {
         }
     }
     cleaner.run(Pass::Rescue(RESCUED), 3);
+    regularise(&mut cleaner);
     settle(cleaner, draft, size_m);
 }
 

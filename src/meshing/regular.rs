@@ -10,7 +10,7 @@
 //! half way. Patterns come from `patterns` (Tarini 2021), windows from `windows`.
 //!
 //! Measured: half to two thirds of the irregular nodes go where sub-domains have a thousand quads
-//! (a synthetic city 3.25 > 1.29 %, muncie 1.92 > .68 %), a tenth to a quarter where lines are dense,
+//! (a synthetic city 3.25 > 1.27 %, muncie 1.92 > .68 %), a tenth to a quarter where lines are dense,
 //! and mean and 1 % quantile of the shapes rise in all, since a lone pair bends what is around it.
 //! Cost: about 30 us an irregular node, a twelfth of the whole where there are most; four of five
 //! patterns that pass [`MARGIN`] are kept.
@@ -52,23 +52,16 @@ struct Filling {
     loss: f64,
 }
 
-/// Sweeps over all irregular nodes, at most `sweeps` times; returns how many windows were filled
-/// again.
-pub(crate) fn regularise(cleaner: &mut Cleaner, sweeps: usize) -> usize {
+/// Tries the windows of every irregular node; returns how many were filled again.
+pub(crate) fn regularise(cleaner: &mut Cleaner) -> usize {
     let mut growth = Growth::new();
     // Several seeds lead to the same windows.
     let mut failed: FxHashSet<Vec<u32>> = FxHashSet::default();
     let mut kept = 0;
-    for _ in 0..sweeps {
-        let before = kept;
-        for node in 0..cleaner.kernel.nodes.len() as u32 {
-            if is_irregular(&cleaner.kernel, node) {
-                let windows = growth.windows(&cleaner.kernel, node);
-                kept += usize::from(fill_one(cleaner, windows, &mut failed));
-            }
-        }
-        if kept == before {
-            break;
+    for node in 0..cleaner.kernel.nodes.len() as u32 {
+        if is_irregular(&cleaner.kernel, node) {
+            let windows = growth.windows(&cleaner.kernel, node);
+            kept += usize::from(fill_one(cleaner, windows, &mut failed));
         }
     }
     kept
@@ -217,7 +210,7 @@ mod tests {
             let mut cleaner = disturbed(13, 10, &picks);
             let (before, rim_before) = (irregular(&cleaner.kernel), rim(&cleaner.kernel));
             let places = outline(&cleaner.kernel);
-            let kept = regularise(&mut cleaner, 3);
+            let kept = regularise(&mut cleaner);
             let kernel = &cleaner.kernel;
             prop_assert!(irregular(kernel) + kept <= before);
             prop_assert_eq!(rim(kernel), rim_before);
@@ -233,7 +226,7 @@ mod tests {
             }
             prop_assert_eq!(&valence, &kernel.valence);
             let mut again = disturbed(13, 10, &picks);
-            regularise(&mut again, 3);
+            regularise(&mut again);
             prop_assert_eq!(&again.kernel.quads, &kernel.quads);
             prop_assert_eq!(&again.kernel.nodes, &kernel.nodes);
         }
@@ -257,7 +250,7 @@ mod tests {
             assert!(cleaner.attempt(&edit, |_, _, _| Verdict::Keep));
         }
         assert_eq!(irregular(&cleaner.kernel), 4);
-        assert!(regularise(&mut cleaner, 3) > 0);
+        assert!(regularise(&mut cleaner) > 0);
         assert_eq!(irregular(&cleaner.kernel), 0);
     }
 }
