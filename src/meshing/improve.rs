@@ -57,14 +57,26 @@ impl Pass {
         }
     }
 
-    /// True if the smoothing left after `stage` will hardly make an operation good enough. Most
-    /// operations fail, and most of the time goes into failing: this saves an eighth of all time
-    /// and loses a fiftieth of the operations that would have been kept.
-    fn is_hopeless(self, stage: usize, before: &Shape, now: &Shape) -> bool {
-        match self {
-            Pass::Valence => now.least < before.least - [1.0, 0.6][stage],
-            Pass::Rescue(_) => now.least < before.least - [1.5, 0.3][stage],
-            Pass::Energy => now.energy > [1.2, 1.05][stage] * before.energy,
+    /// What becomes of an operation after a stage of smoothing. Most operations fail, and most of
+    /// the time goes into failing: to undo what hardly can become good enough saves an eighth of
+    /// all time and loses a fiftieth of the operations that would have been kept.
+    fn judge(self, stage: usize, before: &Shape, now: &Shape) -> Verdict {
+        let no_worse = now.least >= before.least.min(GOOD);
+        let (content, hopeless) = match self {
+            Pass::Valence => (no_worse, now.least < before.least - [1.0, 0.6, 0.0][stage]),
+            Pass::Rescue(_) => (
+                now.least > before.least + 0.05,
+                now.least < before.least - [1.5, 0.3, 0.0][stage],
+            ),
+            Pass::Energy => (
+                no_worse && now.energy <= 0.95 * before.energy - 0.01,
+                now.energy > [1.2, 1.05, 1.0][stage] * before.energy,
+            ),
+        };
+        match (content, hopeless) {
+            (true, _) => Verdict::Keep,
+            (_, true) => Verdict::Undo,
+            _ => Verdict::Smooth,
         }
     }
 
@@ -75,6 +87,15 @@ impl Pass {
             Pass::Energy => 2,
         }
     }
+}
+
+/// What becomes of an operation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Verdict {
+    Keep,
+    /// Smooth on, and ask again; after the last stage it is undone.
+    Smooth,
+    Undo,
 }
 
 /// The clean-up of one mesh, with its memory of what was tried in vain.
@@ -156,7 +177,7 @@ impl Cleaner {
         let fills = matches!(pass, Pass::Rescue(_));
         for (_, operation) in candidates(&self.kernel, quad, pass.limit(), fills) {
             if let Some(edit) = edit(&self.kernel, operation)
-                && self.attempt(&edit, pass)
+                && self.attempt(&edit, |stage, before, now| pass.judge(stage, before, now))
             {
                 return true;
             }
@@ -164,7 +185,7 @@ impl Cleaner {
         if fills && self.refills > 0 && self.kernel.quality(quad) < REFILLED {
             self.refills -= 1;
             for edit in refills(&self.kernel, quad) {
-                if self.attempt(&edit, pass) {
+                if self.attempt(&edit, |stage, before, now| pass.judge(stage, before, now)) {
                     return true;
                 }
             }
@@ -175,8 +196,13 @@ impl Cleaner {
         false
     }
 
-    /// Makes the edit, smooths around it and keeps it or undoes it.
-    fn attempt(&mut self, edit: &Edit, pass: Pass) -> bool {
+    /// Makes the edit, smooths around it and keeps it or undoes it: `judge` is given the stage of
+    /// smoothing and the shapes before and now of all quads that may have changed.
+    pub fn attempt(
+        &mut self,
+        edit: &Edit,
+        judge: impl Fn(usize, &Shape, &Shape) -> Verdict,
+    ) -> bool {
         let distinct = |corners: &[u32; 4]| (0..4).all(|k| !corners[..k].contains(&corners[k]));
         if !edit.new.iter().all(distinct) {
             return false;
@@ -216,7 +242,7 @@ impl Cleaner {
         self.changed.resize(self.kernel.nodes.len(), self.clock);
         self.failed.resize(self.kernel.quads.len(), [0; 3]);
         nodes.retain(|&node| self.kernel.valence[node as usize] > 0);
-        if self.sound(&nodes) && self.settle(&nodes, before, pass) {
+        if self.sound(&nodes) && self.settle(&nodes, &before, judge) {
             self.note(&nodes, &slots);
             return true;
         }
@@ -257,25 +283,21 @@ impl Cleaner {
         nodes.iter().all(|&node| enough(node as usize))
     }
 
-    /// Smooths the free ones of `nodes` until the pass is content, or gives up.
-    fn settle(&mut self, nodes: &[u32], before: Shape, pass: Pass) -> bool {
+    /// Smooths the free ones of `nodes` until there is a verdict; true if it is to keep them so.
+    fn settle(
+        &mut self,
+        nodes: &[u32],
+        before: &Shape,
+        judge: impl Fn(usize, &Shape, &Shape) -> Verdict,
+    ) -> bool {
         let free = |&&node: &&u32| !self.kernel.held[node as usize];
         let free: Few<u32> = nodes.iter().filter(free).copied().collect();
         for (stage, (phase, sweeps)) in STAGES.into_iter().enumerate() {
             smooth_few(&mut self.kernel, &free, phase, sweeps);
-            let now = self.shape(nodes);
-            let content = match pass {
-                Pass::Valence => now.least >= before.least.min(GOOD),
-                Pass::Rescue(_) => now.least > before.least + 0.05,
-                Pass::Energy => {
-                    now.least >= before.least.min(GOOD) && now.energy <= 0.95 * before.energy - 0.01
-                }
-            };
-            if content {
-                return true;
-            }
-            if stage + 1 == STAGES.len() || pass.is_hopeless(stage, &before, &now) {
-                return false;
+            match judge(stage, before, &self.shape(nodes)) {
+                Verdict::Keep => return true,
+                Verdict::Undo => return false,
+                Verdict::Smooth => {}
             }
         }
         false
@@ -306,20 +328,26 @@ impl Cleaner {
         quads.dedup();
         let mut shape = Shape {
             least: 1.0,
+            loss: 0.0,
             energy: 0.0,
         };
         for quad in quads {
             let quality = self.kernel.quality(quad);
             shape.least = shape.least.min(worth(&self.kernel, quad, self.size_m));
+            shape.loss += 1.0 - quality;
             shape.energy += (1.0 - quality).powi(2);
         }
         shape
     }
 }
 
-/// Least scaled Jacobian and sum of (1 - scaled Jacobian)^2 of some quads.
+/// The shape of some quads.
 #[derive(Clone, Copy)]
-struct Shape {
-    least: f64,
-    energy: f64,
+pub(crate) struct Shape {
+    /// Least [`worth`].
+    pub least: f64,
+    /// Sum of 1 - scaled Jacobian.
+    pub loss: f64,
+    /// Sum of (1 - scaled Jacobian)^2.
+    pub energy: f64,
 }

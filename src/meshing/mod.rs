@@ -33,9 +33,11 @@
 //!   minimum-weight pairs.
 //! - `last_resort`: any [`join`] of any triangulation with rings; its page says why it cannot fail.
 //! - `cavity`: the last resort in the hole around a bad quad; such quads are counted.
-//! - `kernel`, `edits`, `refill`, `improve`, `star`, `smooth`: the finish, on the part of a draft that is not
-//!   settled. Operations after Kinney (1997) and Canann, Muthukrishnan, Phillips (1998), each with
-//!   undo; smoothing after Garanzha and others (2021).
+//! - `kernel`, `edits`, `refill`, `improve`, `star`, `smooth`: the finish, on the part of a draft
+//!   that is not settled. Operations after Kinney (1997) and Canann, Muthukrishnan, Phillips (1998),
+//!   each with undo; smoothing after Garanzha and others (2021).
+//! - `windows`, `regular`: in it, convex windows around irregular nodes filled again by a pattern
+//!   with fewer, with undo like any operation. After Peng, Zhang, Kobayashi and Wonka (2011).
 //!
 //! # Cost
 //!
@@ -72,6 +74,7 @@ mod pairing;
 pub mod patch;
 mod patterns;
 mod refill;
+mod regular;
 mod rows;
 mod scatter;
 pub mod score;
@@ -83,6 +86,7 @@ mod strip;
 mod strip_border;
 mod triangulate;
 mod visits;
+mod windows;
 
 use crate::geometry::point::Xy;
 use crate::meshing::check::Defect;

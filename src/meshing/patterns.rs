@@ -87,6 +87,24 @@ pub(crate) fn lay(sheet: &mut Sheet, contour: &Contour) -> Option<Shape> {
     best.map(|(_, plan)| lay_plan(sheet, contour, &plan))
 }
 
+/// Lays the pattern over these corners whatever the angles, or nothing if the counts allow none.
+pub(crate) fn lay_over(sheet: &mut Sheet, contour: &Contour, corners: &[usize]) -> Option<Shape> {
+    let counts = counts(contour.len(), corners);
+    let plan = if counts.len() == 4 && !is_grid(&counts) {
+        pair_plan(contour, corners, 0.0)?
+    } else {
+        if counts.len() != 4 {
+            spokes(&counts)?;
+        }
+        Plan {
+            misfit: 0.0,
+            corners: corners.to_vec(),
+            cut: None,
+        }
+    };
+    Some(lay_plan(sheet, contour, &plan))
+}
+
 /// How well `contour` promises to fit a pattern, from 0 to 1, by its angles and counts alone.
 pub(crate) fn promise(contour: &Contour) -> f64 {
     if contour.len() < 4 || contour.angle.iter().any(|&angle| angle > REFLEX) {
@@ -174,7 +192,7 @@ fn plan_with_corners(contour: &Contour, corners: &[usize], search: Search) -> Op
     }
     let counts = counts(contour.len(), corners);
     if corners.len() == 4 {
-        if counts[0] == counts[2] && counts[1] == counts[3] {
+        if is_grid(&counts) {
             return None;
         }
         let misfit = misfit + 2.0 * IRREGULAR;
@@ -197,8 +215,24 @@ fn plan_with_corners(contour: &Contour, corners: &[usize], search: Search) -> Op
     })
 }
 
+/// How many irregular nodes a pattern with these counts has (one of valence 6 counts for two), if
+/// it has three to six sides.
+pub(crate) fn irregular_nodes(counts: &[usize]) -> Option<usize> {
+    match counts.len() {
+        3 | 5 => Some(1),
+        4 if is_grid(counts) => Some(0),
+        4 | 6 => Some(2),
+        _ => None,
+    }
+}
+
+/// True if opposite sides of four have equal counts.
+fn is_grid(counts: &[usize]) -> bool {
+    counts.len() == 4 && counts[0] == counts[2] && counts[1] == counts[3]
+}
+
 /// Edges on each side, the first from corner 0 to corner 1.
-fn counts(n: usize, corners: &[usize]) -> Vec<usize> {
+pub(crate) fn counts(n: usize, corners: &[usize]) -> Vec<usize> {
     let k = corners.len();
     (0..k)
         .map(|s| (corners[(s + 1) % k] + n - corners[s] - 1) % n + 1)
@@ -214,6 +248,13 @@ fn spokes(counts: &[usize]) -> Option<[usize; 6]> {
 
 /// The same for spokes of at least 0.
 fn loose_spokes(counts: &[usize]) -> Option<[usize; 6]> {
+    let spokes = signed_spokes(counts)?;
+    (spokes.iter().all(|&spoke| spoke >= 0)).then(|| spokes.map(|spoke| spoke as usize))
+}
+
+/// The same for spokes of any sign: one side farther out makes its spoke longer by one, and changes
+/// no other.
+pub(crate) fn signed_spokes(counts: &[usize]) -> Option<[i64; 6]> {
     let n = counts.len();
     // Following steps of two from spoke i, the counts between them come with alternating sign.
     let terms = match n {
@@ -228,10 +269,10 @@ fn loose_spokes(counts: &[usize]) -> Option<[usize; 6]> {
             let count = counts[(i + 2 * k + 1) % n] as i64;
             twice += if k % 2 == 0 { count } else { -count };
         }
-        if twice < 0 || twice % 2 == 1 {
+        if twice % 2 != 0 {
             return None;
         }
-        spokes[i] = twice as usize / 2;
+        spokes[i] = twice / 2;
     }
     Some(spokes)
 }

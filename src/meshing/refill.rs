@@ -136,46 +136,12 @@ fn costs(kernel: &Kernel, cavity: &[u32], outline: &[u32], k: usize) -> catalogu
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::meshing::draft::Draft;
-    use crate::meshing::patch::Method;
-    use crate::meshing::visits::Visits;
-
-    /// A grid of 4 x 4 quads: its 16 outer nodes are the walk.
-    fn grid() -> Kernel {
-        let side = |k: usize| match k / 4 {
-            0 => [k, 0],
-            1 => [4, k - 4],
-            2 => [12 - k, 4],
-            _ => [0, 16 - k],
-        };
-        let mut places: Vec<[usize; 2]> = (0..16).map(side).collect();
-        places.extend((0..9).map(|k| [1 + k % 3, 1 + k / 3]));
-        let node = |at: [usize; 2]| places.iter().position(|&place| place == at).unwrap() as u32;
-        let quads = (0..16).map(|k| {
-            let (x, y) = (k % 4, k / 4);
-            [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]].map(node)
-        });
-        let nodes: Vec<Xy> = places.iter().map(|it| it.map(|x| x as f64)).collect();
-        let visits = Visits {
-            nodes: nodes[..16].to_vec(),
-            walk_start: vec![0, 16],
-            unique: (0..16).collect(),
-            on_seam: vec![false; 16],
-        };
-        let draft = Draft {
-            quads: quads.collect(),
-            nodes,
-            visits: 16,
-            settled: 0,
-            method: Method::Strip,
-        };
-        Kernel::of(&draft, &visits)
-    }
+    use crate::meshing::kernel::grid;
 
     #[test]
     fn every_refill_fits_its_cavity_and_can_be_undone() {
         for quad in 0..16 {
-            let mut kernel = grid();
+            let mut kernel = grid(4, 4);
             let edits = refills(&kernel, quad);
             assert!(!edits.is_empty());
             for edit in edits {
