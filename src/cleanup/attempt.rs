@@ -48,12 +48,7 @@ impl Graph<'_> {
 
     fn take_back(&mut self, deed: Deed) {
         match deed {
-            Deed::AddedNode => {
-                let p = self.at.pop().expect("a node was added");
-                self.index.remove_node(self.at.len() as u32, p);
-                self.stand.pop();
-                self.star.pop();
-            }
+            Deed::AddedNode => self.pop_node(),
             Deed::Added => {
                 self.unlink(self.edges.len() as u32 - 1);
                 self.edges.pop();

@@ -19,19 +19,22 @@
 //! becomes the chain of centres of the hot pixels that it passes through.
 //! 1. `tile`: the tiles of the grid that hold something, each with the segments that pass it.
 //! 2. `hot`: hot pixels of one tile and which segments pass through each. A tile owns the pixels of
-//!    its half-open window; segments are never cut at its border.
+//!    its half-open window; segments are never cut at its border. Windows are divided until each
+//!    holds so few segments that each can be held against each, or dividing gains nothing more.
 //! 3. `stitch`: the hot pixels of all tiles in order along each segment; edges and pieces.
 //! 4. `winding`, `clip`: the side of each edge that lies inside; what lies outside is dropped.
 //!
 //! After Hobby 1999 and, for the half-open pixels, Guibas and Marimont 1998. Unlike them we find
-//! crossings by an R-tree over the segments of a tile: line work of cities has about as many
-//! crossings as segments, and a tile needs no event order. Whether a pixel is hot, and who passes
+//! crossings window by window: line work of cities has about as many crossings as segments, and a
+//! window needs no event order. Whether a pixel is hot, and who passes
 //! it, are exact questions about input segments only; so tiles need no halo and no agreement.
 //!
 //! # Cost
 //! O((n + k) log n) for n segments and k incidences of segments and hot pixels; a segment enters
-//! only tiles that it passes. Memory: 8 bytes a segment and tile, 16 an incidence; stitching adds
-//! 24 an incidence and 40 a piece for as long as it sorts.
+//! only tiles that it passes. (Segments side by side over all of a window, as many equal ones, cost
+//! their square; an R-tree costs the same there, and twice as much everywhere.) Memory: 8 bytes a
+//! segment and tile, 16 an incidence; stitching adds 28 an incidence and 44 a piece for as long as
+//! it sorts.
 //!
 //! # Not here
 //! Anything with a length: near misses, slivers and short ends are `cleanup`'s. Faces are
