@@ -33,7 +33,7 @@ impl Graph<'_> {
     /// shift nodes; whatever changes edges that stay must come last, and succeed.
     pub(super) fn attempt<R>(&mut self, tried: impl FnOnce(&mut Self) -> Option<R>) -> Option<R> {
         assert!(self.deeds.is_none(), "attempts are not nested");
-        let touched = self.touched.len();
+        let (touched, changed) = (self.touched.len(), self.changed.len());
         self.deeds = Some(Vec::new());
         let done = tried(self);
         let deeds = self.deeds.take().expect("an attempt is under way");
@@ -42,6 +42,7 @@ impl Graph<'_> {
                 self.take_back(deed);
             }
             self.touched.truncate(touched);
+            self.changed.truncate(changed);
         }
         done
     }

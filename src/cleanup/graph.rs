@@ -117,6 +117,8 @@ pub(super) struct Graph<'a> {
     pub(super) index: Index,
     /// Every node that an edge was taken from or given to, in order: what later steps look at.
     pub(super) touched: Vec<u32>,
+    /// Every edge that came, moved or took up another one, in order.
+    pub(super) changed: Vec<u32>,
     pub(super) changes: Vec<Change>,
     pub(super) dropped: Vec<Dropped>,
     /// Of the attempt under way, if there is one.
@@ -157,6 +159,7 @@ impl<'a> Graph<'a> {
             edges: Vec::with_capacity(4 * at.len()),
             index: Index::new(side.max(8.0), around(&at), CELLS_A_NODE * (at.len() + 64)),
             touched: Vec::new(),
+            changed: Vec::new(),
             changes: Vec::new(),
             dropped: Vec::new(),
             deeds: None,
@@ -191,6 +194,7 @@ impl<'a> Graph<'a> {
             let least_m = &mut self.size_at_m[node as usize];
             *least_m = least_m.min(it.size_m);
         }
+        self.changed.push(edge);
         self.hold(edge);
     }
 
@@ -223,6 +227,7 @@ impl<'a> Graph<'a> {
             let at = ends.map(|end| self.point(end));
             let was = ends.map(|end| if end == node { from } else { self.point(end) });
             self.index.replace(was, Held::new(edge, ends, at));
+            self.changed.push(edge);
         }
     }
 
@@ -340,6 +345,7 @@ impl<'a> Graph<'a> {
         (it.pieces, it.size_m, it.rank) = (pieces, size_m, rank);
         let ends = it.ends;
         ends.iter().for_each(|&node| self.measure_size(node));
+        self.changed.push(edge);
         edge
     }
 

@@ -68,8 +68,9 @@
 //!
 //! # Cost
 //! Near-linear: each operation looks at a few cells of a grid (`cells`, `index`); later rounds look
-//! only at what was changed, and an attempt that failed changes nothing. Relaxation asks once in three
-//! rounds what is near (`nearby`); it is 38 % of all, separation 39 %. Cores share districts and bands, and two of them
+//! only at what was changed. An attempt that failed changes nothing, and within a pass `separate`
+//! tries it again only where an edge changed since. Relaxation asks once in three rounds what is near
+//! (`nearby`); it is 38 % of all, separation 39 %. Cores share districts and bands, and two of them
 //! the end; what one core does alone is a tenth of the time that two need for all. Memory: some 300
 //! bytes an edge.
 //!

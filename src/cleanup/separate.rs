@@ -121,12 +121,14 @@ pub(super) fn separate(graph: &mut Graph, narrow: &Narrow, nodes: &[u32]) {
             queue.push(graph, node, first.ratio);
             continue;
         }
+        let mark = graph.changed.len();
         let resolved = (conflicts.iter()).find_map(|it| resolve(graph, narrow, node, it.with));
         if let Some(centre) = resolved {
             tries.resize(graph.at.len(), 0);
             let tried = tries[node as usize].max(tries[centre as usize]) + 1;
             (tries[node as usize], tries[centre as usize]) = (tried, tried);
-            push_around(graph, narrow, centre, &mut queue);
+            push(graph, narrow, centre, &mut queue);
+            push_beside_changed(graph, narrow, mark, &mut queue);
         }
     }
 }
@@ -139,11 +141,16 @@ fn push(graph: &Graph, narrow: &Narrow, node: u32, queue: &mut Queue) {
     }
 }
 
-/// Queues `centre`, and all nodes that its edges are too near to.
-fn push_around(graph: &Graph, narrow: &Narrow, centre: u32, queue: &mut Queue) {
-    push(graph, narrow, centre, queue);
-    for &edge in &graph.star[centre as usize] {
-        push_beside(graph, narrow, edge, queue);
+/// Queues all nodes beside edges that changed since `changed` had this length. Beside the other
+/// edges of the same nodes all is as it was, and what failed there would nearly always fail again.
+fn push_beside_changed(graph: &Graph, narrow: &Narrow, mark: usize, queue: &mut Queue) {
+    let mut edges: SmallVec<[u32; 16]> = graph.changed[mark..].into();
+    edges.sort_unstable();
+    edges.dedup();
+    for edge in edges {
+        if graph.is_there(edge) {
+            push_beside(graph, narrow, edge, queue);
+        }
     }
 }
 
