@@ -223,10 +223,10 @@ pub(super) fn displacements(graph: &Graph) -> Tally {
                     length_m: (length / 4.0) as f32,
                     line: piece.line,
                 });
-                for p in [u, v] {
-                    let away = away_m(p);
-                    worst = [worst[0].max(away), worst[1].max(away / size_m)];
-                }
+            }
+            for &p in &way {
+                let away = away_m(p);
+                worst = [worst[0].max(away), worst[1].max(away / size_m)];
             }
         }
     }

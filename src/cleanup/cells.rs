@@ -20,12 +20,15 @@ const BLOCK: u32 = 2;
 type Block<T> = [T; 1 << (2 * BLOCK)];
 
 impl<T: Default> Cells<T> {
-    pub(super) fn new(grid: Grid) -> Cells<T> {
-        let blocks = (grid.columns >> BLOCK) as usize * (grid.rows >> BLOCK) as usize;
+    /// Empty cells. `held`: about how many blocks will hold something; more have to be moved.
+    pub(super) fn new(grid: Grid, held: usize) -> Cells<T> {
+        let all = (grid.columns >> BLOCK) as usize * (grid.rows >> BLOCK) as usize;
+        let mut blocks = Vec::with_capacity(held.min(all) + 1);
+        blocks.push(Block::default());
         Cells {
             grid,
-            table: vec![0; blocks],
-            blocks: vec![Block::default()],
+            table: vec![0; all],
+            blocks,
         }
     }
 

@@ -157,9 +157,9 @@ impl<'a> Graph<'a> {
             star: vec![SmallVec::new(); at.len()],
             size_at_m: vec![f64::INFINITY; at.len()],
             edges: Vec::with_capacity(4 * at.len()),
-            index: Index::new(side.max(8.0), around(&at), CELLS_A_NODE * (at.len() + 64)),
-            touched: Vec::new(),
-            changed: Vec::new(),
+            index: Index::new(side.max(8.0), around(&at), at.len()),
+            touched: Vec::with_capacity(4 * at.len()),
+            changed: Vec::with_capacity(4 * at.len()),
             changes: Vec::new(),
             dropped: Vec::new(),
             deeds: None,
@@ -524,9 +524,6 @@ impl<'a> Graph<'a> {
         Arrangement::from_parts(&self.at, parts)
     }
 }
-
-/// Most cells of the index for each node: where lines are few and far between, cells are wider.
-const CELLS_A_NODE: usize = 64;
 
 /// The window around all nodes.
 fn around(at: &[Point]) -> Window {

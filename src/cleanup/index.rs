@@ -14,6 +14,12 @@ pub(super) struct Index {
     nodes: Option<Chains>,
 }
 
+/// Most cells for each node: where lines are few and far between, cells are wider.
+const CELLS_A_NODE: usize = 64;
+
+/// Fewer nodes than this are in most blocks of cells that hold any.
+const NODES_A_BLOCK: usize = 2;
+
 /// Cells of nodes are smaller: a node lies in one, however small it is, an edge in many.
 const NODE_CELL: f64 = 0.5;
 
@@ -76,10 +82,12 @@ impl Held {
 }
 
 impl Index {
-    /// An empty index for edges of about `side` grid units, most of them in the window.
-    pub(super) fn new(side: f64, window: Window, cells_max: usize) -> Index {
+    /// An empty index for edges of about `side` grid units between so many nodes, most of them in
+    /// the window.
+    pub(super) fn new(side: f64, window: Window, nodes: usize) -> Index {
+        let grid = Grid::over(window, side, CELLS_A_NODE * (nodes + 64));
         Index {
-            edges: Cells::new(Grid::over(window, side, cells_max)),
+            edges: Cells::new(grid, nodes / NODES_A_BLOCK),
             nodes: None,
         }
     }
@@ -124,7 +132,7 @@ impl Index {
     /// Takes up all nodes, and from now on each one that is inserted.
     pub(super) fn take_nodes(&mut self, at: &[Point]) {
         let mut chains = Chains {
-            heads: Cells::new(self.edges.grid.finer(NODE_CELL)),
+            heads: Cells::new(self.edges.grid.finer(NODE_CELL), at.len() / NODES_A_BLOCK),
             links: Vec::with_capacity(at.len()),
         };
         (0..).zip(at).for_each(|(node, &p)| chains.insert(node, p));
