@@ -33,7 +33,7 @@ impl Graph<'_> {
     /// shift nodes; whatever changes edges that stay must come last, and succeed.
     pub(super) fn attempt<R>(&mut self, tried: impl FnOnce(&mut Self) -> Option<R>) -> Option<R> {
         assert!(self.deeds.is_none(), "attempts are not nested");
-        let touched = self.touched.len();
+        let (touched, changed) = (self.touched.len(), self.changed.len());
         self.deeds = Some(Vec::new());
         let done = tried(self);
         let deeds = self.deeds.take().expect("an attempt is under way");
@@ -42,18 +42,14 @@ impl Graph<'_> {
                 self.take_back(deed);
             }
             self.touched.truncate(touched);
+            self.changed.truncate(changed);
         }
         done
     }
 
     fn take_back(&mut self, deed: Deed) {
         match deed {
-            Deed::AddedNode => {
-                let p = self.at.pop().expect("a node was added");
-                self.index.remove_node(self.at.len() as u32, p);
-                self.stand.pop();
-                self.star.pop();
-            }
+            Deed::AddedNode => self.pop_node(),
             Deed::Added => {
                 self.unlink(self.edges.len() as u32 - 1);
                 self.edges.pop();

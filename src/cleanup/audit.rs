@@ -10,6 +10,7 @@ use crate::cleanup::measure::to_segment;
 use crate::domain::line::LineId;
 use crate::geometry::point::Xy;
 use crate::noding::arrangement::Piece;
+use crate::noding::arrangement::grouped;
 use smallvec::SmallVec;
 
 /// A stretch of a line: line, from, to.
@@ -41,20 +42,25 @@ pub(super) fn stretches<'p>(
     graph: &Graph,
     pieces: impl Iterator<Item = &'p Piece>,
 ) -> Vec<Stretch> {
-    let mut all: Vec<Stretch> = pieces
+    let all: Vec<Stretch> = pieces
         .filter(|piece| !graph.measure.is_rim(piece.line))
         .map(|it| (it.line, it.from_m.min(it.to_m), it.from_m.max(it.to_m)))
         .collect();
-    all.sort_by(|a, b| {
-        a.0.cmp(&b.0)
-            .then(a.1.total_cmp(&b.1))
-            .then(a.2.total_cmp(&b.2))
-    });
+    let lines = graph.measure.domain.lines.len();
+    let order = grouped(&all, lines, |it| it.0 as usize);
+    let mut here: Vec<Stretch> = Vec::new();
     let mut union: Vec<Stretch> = Vec::new();
-    for (line, from, to) in all {
-        match union.last_mut() {
-            Some(last) if last.0 == line && from <= last.2 + ROUNDING_M => last.2 = last.2.max(to),
-            _ => union.push((line, from, to)),
+    for of_line in order.chunk_by(|&s, &t| all[s as usize].0 == all[t as usize].0) {
+        here.clear();
+        here.extend(of_line.iter().map(|&it| all[it as usize]));
+        here.sort_unstable_by(|a, b| a.1.total_cmp(&b.1).then(a.2.total_cmp(&b.2)));
+        for &(line, from, to) in &here {
+            match union.last_mut() {
+                Some(last) if last.0 == line && from <= last.2 + ROUNDING_M => {
+                    last.2 = last.2.max(to);
+                }
+                _ => union.push((line, from, to)),
+            }
         }
     }
     union
@@ -186,8 +192,8 @@ pub(super) fn displacements(graph: &Graph) -> Tally {
     let mut samples: Vec<Sample> = Vec::new();
     let live = graph.edges.iter().filter(|edge| edge.alive);
     let pieces: usize = live.map(|edge| edge.pieces.len()).sum();
-    // four for each segment of each piece, which hold the vertices between them
-    samples.reserve(4 * (pieces + graph.measure.vertices_len()));
+    // one for each segment of each piece, which hold the vertices between them
+    samples.reserve(pieces + graph.measure.vertices_len());
     // at vertices, which have no length
     let mut worst = [0.0_f64; 2];
     let mut way: Vec<Xy> = Vec::new();
@@ -208,20 +214,19 @@ pub(super) fn displacements(graph: &Graph) -> Tally {
                 let [u, v] = [pair[0], pair[1]];
                 let length = distance(u, v);
                 // the distance to a segment is convex along the pair: quarters are fine enough
-                for k in 0..4 {
+                let quarter = |k: u8| {
                     let t = (f64::from(k) + 0.5) / 4.0;
-                    let p = [u[0] + t * (v[0] - u[0]), u[1] + t * (v[1] - u[1])];
-                    let away = away_m(p);
-                    samples.push(Sample {
-                        away_m: away,
-                        length_m: (length / 4.0) as f32,
-                        line: piece.line,
-                    });
-                }
-                for p in [u, v] {
-                    let away = away_m(p);
-                    worst = [worst[0].max(away), worst[1].max(away / size_m)];
-                }
+                    away_m([u[0] + t * (v[0] - u[0]), u[1] + t * (v[1] - u[1])])
+                };
+                samples.push(Sample {
+                    away_m: [0, 1, 2, 3].map(quarter),
+                    length_m: (length / 4.0) as f32,
+                    line: piece.line,
+                });
+            }
+            for &p in &way {
+                let away = away_m(p);
+                worst = [worst[0].max(away), worst[1].max(away / size_m)];
             }
         }
     }
@@ -229,7 +234,7 @@ pub(super) fn displacements(graph: &Graph) -> Tally {
     let [displacement_max_m, displacement_p99_m] = extremes(&samples, |it| it.away_m, worst[0]);
     let [displacement_max_over_size, displacement_p99_over_size] = extremes(
         &samples,
-        |it| it.away_m / size_m[it.line as usize],
+        |it| it.away_m.map(|away| away / size_m[it.line as usize]),
         worst[1],
     );
     Tally {
@@ -252,10 +257,11 @@ fn sides_of_line(graph: &Graph, edge: &Edge, line: LineId) -> SmallVec<[(Xy, Xy)
     near.map(|&it| graph.ends_m(it)).collect()
 }
 
-/// A short part of a stretch.
+/// A segment of a stretch.
 struct Sample {
-    /// From the edges of its line.
-    away_m: f64,
+    /// Of the middle of each quarter, from the edges of its line.
+    away_m: [f64; 4],
+    /// Of a quarter.
     length_m: f32,
     line: LineId,
 }
@@ -265,12 +271,13 @@ const BINS: usize = 4096;
 
 /// Largest value, at least `worst`, and 99 % quantile by length. O(n): only the bin that the
 /// quantile lies in is sorted.
-fn extremes(samples: &[Sample], value: impl Fn(&Sample) -> f64, worst: f64) -> [f64; 2] {
-    let largest = samples.iter().map(&value).fold(worst, f64::max);
+fn extremes(samples: &[Sample], values: impl Fn(&Sample) -> [f64; 4], worst: f64) -> [f64; 2] {
+    let all = || (samples.iter()).flat_map(|it| values(it).map(|value| (value, it.length_m)));
+    let largest = all().map(|it| it.0).fold(worst, f64::max);
     let bin = |value: f64| ((value / largest * BINS as f64) as usize).min(BINS - 1);
     let mut length_m = vec![0.0; BINS];
-    for it in samples {
-        length_m[bin(value(it))] += f64::from(it.length_m);
+    for (value, part_m) in all() {
+        length_m[bin(value)] += f64::from(part_m);
     }
     let mut rest_m = 0.99 * length_m.iter().sum::<f64>();
     let mut is_before = |more_m: f64| {
@@ -281,8 +288,7 @@ fn extremes(samples: &[Sample], value: impl Fn(&Sample) -> f64, worst: f64) -> [
     let last = BINS - 1;
     let from = (0..last).find(|&k| !is_before(length_m[k]));
     let from = from.unwrap_or(last);
-    let all = samples.iter().map(|it| (value(it), it.length_m));
-    let mut here: Vec<(f64, f32)> = all.filter(|it| bin(it.0) == from).collect();
+    let mut here: Vec<(f64, f32)> = all().filter(|it| bin(it.0) == from).collect();
     here.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
     let quantile = here.iter().find(|it| !is_before(f64::from(it.1)));
     [largest, quantile.or(here.last()).map_or(0.0, |it| it.0)]

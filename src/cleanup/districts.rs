@@ -60,6 +60,8 @@ use crate::domain::size::SizeWish;
 use crate::geometry::point::Point;
 use crate::geometry::window::Window;
 use crate::noding::arrangement::Arrangement;
+use crate::noding::arrangement::grouped;
+use crate::noding::arrangement::sorted_points;
 
 /// All that districts share.
 pub struct Site<'a> {
@@ -267,26 +269,30 @@ fn graph_of<'a>(
     bounds: Option<Window>,
     is_open: impl Fn(Point) -> bool,
 ) -> Graph<'a> {
-    // ids are in the order of points, so edges are in that of their ids
-    edges.sort_unstable_by_key(|it| it.ends);
-    let mut at: Vec<Point> = edges.iter().flat_map(|edge| edge.ends).collect();
-    at.sort_unstable();
-    at.dedup();
+    let ends: Vec<Point> = edges.iter().flat_map(|edge| edge.ends).collect();
+    let (at, id) = sorted_points(&ends);
+    let ends: Vec<[u32; 2]> = id.chunks_exact(2).map(|it| [it[0], it[1]]).collect();
+    // in the order of their ids, which is that of the points
+    let mut order = grouped(&ends, at.len(), |it| it[0] as usize);
+    for star in order.chunk_by_mut(|&s, &t| ends[s as usize][0] == ends[t as usize][0]) {
+        star.sort_unstable_by_key(|&it| ends[it as usize][1]);
+    }
     let is_open: Vec<bool> = at.iter().map(|&p| is_open(p)).collect();
-    let length: f64 = (edges.iter())
-        .map(|it| it.ends[0].distance(it.ends[1]))
-        .sum();
+    let lengths = order.iter().map(|&it| {
+        let [a, b] = edges[it as usize].ends;
+        a.distance(b)
+    });
+    let length: f64 = lengths.sum();
     let mean = length / edges.len().max(1) as f64;
     let mut graph = Graph::without_edges(measure, at, mean, bounds);
     let mut stand = vec![Stand::Settled; is_open.len()];
-    for edge in edges {
-        let id = |p: Point| graph.at.binary_search(&p).expect("all ends are there") as u32;
-        let ends = edge.ends.map(id);
+    for it in order {
+        let (edge, ends) = (&mut edges[it as usize], ends[it as usize]);
         if ends.iter().any(|&end| is_open[end as usize]) {
             ends.iter()
                 .for_each(|&end| stand[end as usize] = Stand::Open);
         }
-        graph.add(ends, edge.pieces, edge.inside);
+        graph.add(ends, std::mem::take(&mut edge.pieces), edge.inside);
     }
     for (node, &stand) in (0..).zip(&stand) {
         graph.set_stand(node, stand);

@@ -111,10 +111,14 @@ pub(super) struct Graph<'a> {
     pub(super) stand: Vec<Stand>,
     /// Edges at each node.
     pub(super) star: Vec<SmallVec<[u32; 4]>>,
+    /// Least wished edge length of the edges at each node, metres.
+    size_at_m: Vec<f64>,
     pub(super) edges: Vec<Edge>,
     pub(super) index: Index,
     /// Every node that an edge was taken from or given to, in order: what later steps look at.
     pub(super) touched: Vec<u32>,
+    /// Every edge that came, moved or took up another one, in order.
+    pub(super) changed: Vec<u32>,
     pub(super) changes: Vec<Change>,
     pub(super) dropped: Vec<Dropped>,
     /// Of the attempt under way, if there is one.
@@ -151,9 +155,11 @@ impl<'a> Graph<'a> {
             bounds,
             stand: vec![Stand::Open; at.len()],
             star: vec![SmallVec::new(); at.len()],
+            size_at_m: vec![f64::INFINITY; at.len()],
             edges: Vec::with_capacity(4 * at.len()),
-            index: Index::new(side.max(8.0)),
-            touched: Vec::new(),
+            index: Index::new(side.max(8.0), around(&at), at.len()),
+            touched: Vec::with_capacity(4 * at.len()),
+            changed: Vec::with_capacity(4 * at.len()),
             changes: Vec::new(),
             dropped: Vec::new(),
             deeds: None,
@@ -182,10 +188,13 @@ impl<'a> Graph<'a> {
 
     /// Makes the edge known to its ends and to the index.
     pub(super) fn link(&mut self, edge: u32) {
-        let ends = self.edges[edge as usize].ends;
-        for node in ends {
+        let it = &self.edges[edge as usize];
+        for node in it.ends {
             self.star[node as usize].push(edge);
+            let least_m = &mut self.size_at_m[node as usize];
+            *least_m = least_m.min(it.size_m);
         }
+        self.changed.push(edge);
         self.hold(edge);
     }
 
@@ -201,6 +210,7 @@ impl<'a> Graph<'a> {
         let ends = self.edges[edge as usize].ends;
         for node in ends {
             self.star[node as usize].retain(|held| *held != edge);
+            self.measure_size(node);
         }
         let [a, b] = ends.map(|node| self.point(node));
         self.index.remove(edge, a, b);
@@ -217,6 +227,7 @@ impl<'a> Graph<'a> {
             let at = ends.map(|end| self.point(end));
             let was = ends.map(|end| if end == node { from } else { self.point(end) });
             self.index.replace(was, Held::new(edge, ends, at));
+            self.changed.push(edge);
         }
     }
 
@@ -236,8 +247,18 @@ impl<'a> Graph<'a> {
         self.at.push(p);
         self.stand.push(Stand::Open);
         self.star.push(SmallVec::new());
+        self.size_at_m.push(f64::INFINITY);
         self.did(Deed::AddedNode);
         node
+    }
+
+    /// Takes the newest node back, which has no edges.
+    pub(super) fn pop_node(&mut self) {
+        let p = self.at.pop().expect("a node was added");
+        self.index.remove_node(self.at.len() as u32, p);
+        self.stand.pop();
+        self.star.pop();
+        self.size_at_m.pop();
     }
 
     pub(super) fn set_stand(&mut self, node: u32, stand: Stand) {
@@ -322,6 +343,9 @@ impl<'a> Graph<'a> {
         let (size_m, rank) = self.size_and_rank(&pieces);
         let it = &mut self.edges[edge as usize];
         (it.pieces, it.size_m, it.rank) = (pieces, size_m, rank);
+        let ends = it.ends;
+        ends.iter().for_each(|&node| self.measure_size(node));
+        self.changed.push(edge);
         edge
     }
 
@@ -419,9 +443,13 @@ impl<'a> Graph<'a> {
     /// Least wished edge length of the edges at a node, metres.
     #[inline]
     pub(super) fn size_at_m(&self, node: u32) -> f64 {
+        self.size_at_m[node as usize]
+    }
+
+    fn measure_size(&mut self, node: u32) {
         let star = &self.star[node as usize];
         let sizes = star.iter().map(|&e| self.edges[e as usize].size_m);
-        sizes.fold(f64::INFINITY, f64::min)
+        self.size_at_m[node as usize] = sizes.fold(f64::INFINITY, f64::min);
     }
 
     /// All nodes that have edges.
@@ -494,6 +522,20 @@ impl<'a> Graph<'a> {
             }
         }
         Arrangement::from_parts(&self.at, parts)
+    }
+}
+
+/// The window around all nodes.
+fn around(at: &[Point]) -> Window {
+    let (mut min, mut max) = (at.first().copied(), at.first().copied());
+    for p in at {
+        min = min.map(|it| Point::new(it.x.min(p.x), it.y.min(p.y)));
+        max = max.map(|it| Point::new(it.x.max(p.x), it.y.max(p.y)));
+    }
+    let nowhere = Point::new(0, 0);
+    Window {
+        min: min.unwrap_or(nowhere),
+        max: max.unwrap_or(nowhere),
     }
 }
 

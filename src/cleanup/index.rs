@@ -1,62 +1,58 @@
-//! Hash grids over segments and points: which edges and nodes come near a segment.
+//! Grids over segments and points: which edges and nodes come near a segment.
 
-use rustc_hash::FxHashMap;
-
+use crate::cleanup::cells::Cells;
+use crate::cleanup::cells::Grid;
 use crate::geometry::point::Point;
+use crate::geometry::window::Window;
 
 /// Edges by the square cells that they pass, nodes by the cell that they lie in. A segment occupies
 /// every cell that it touches (and now and then one beside it), so a query misses nothing. Queries
 /// and updates cost O(cells passed + what is there).
 pub(super) struct Index {
-    edges: Cells<Held>,
+    edges: Cells<Vec<Held>>,
     /// Of a graph that is being changed: looking at one takes none.
-    nodes: Option<Cells<(u32, Point)>>,
+    nodes: Option<Chains>,
 }
 
-/// What lies in each cell of a grid.
-struct Cells<T> {
-    side: f64,
-    /// Cells by blocks: most queries stay inside one, and hash once.
-    blocks: FxHashMap<(i32, i32), Block<T>>,
-}
+/// Most cells for each node: where lines are few and far between, cells are wider.
+const CELLS_A_NODE: usize = 64;
 
-/// Cells a side of a block, as a power of two.
-const BLOCK: u32 = 2;
-
-/// The cells of a block, row by row.
-type Block<T> = [Vec<T>; 1 << (2 * BLOCK)];
+/// Fewer nodes than this are in most blocks of cells that hold any.
+const NODES_A_BLOCK: usize = 2;
 
 /// Cells of nodes are smaller: a node lies in one, however small it is, an edge in many.
 const NODE_CELL: f64 = 0.5;
 
-impl<T> Cells<T> {
-    fn new(side: f64) -> Cells<T> {
-        let blocks = FxHashMap::default();
-        Cells { side, blocks }
+/// Nodes by cell: the nodes of one are a chain, as each node is in one cell only.
+struct Chains {
+    /// Where the chain of a cell begins: the node's id and one, or zero.
+    heads: Cells<u32>,
+    /// By node: where it is, and the next one, as in `heads`.
+    links: Vec<(Point, u32)>,
+}
+
+impl Chains {
+    fn insert(&mut self, node: u32, p: Point) {
+        let head = self.heads.at(self.heads.grid.cell(p));
+        if self.links.len() <= node as usize {
+            self.links.resize(node as usize + 1, (p, 0));
+        }
+        self.links[node as usize] = (p, *head);
+        *head = node + 1;
     }
 
-    /// The cell that `p` lies in.
-    fn cell(&self, p: Point) -> (i32, i32) {
-        let per_side = 1.0 / self.side;
-        [p.x, p.y].map(|v| floor(f64::from(v) * per_side)).into()
-    }
-
-    fn at(&mut self, cell: (i32, i32)) -> &mut Vec<T> {
-        &mut self.blocks.entry(block(cell)).or_default()[within(cell)]
-    }
-
-    /// True if something that is held in a cell within `margin` of the segment is what is looked
-    /// for.
-    #[inline]
-    fn any(&self, a: Point, b: Point, margin: f64, mut is: impl FnMut(&T) -> bool) -> bool {
-        let mut last: (Option<(i32, i32)>, Option<&Block<T>>) = (None, None);
-        passed(self.side, a, b, margin, |cell| {
-            if last.0 != Some(block(cell)) {
-                last = (Some(block(cell)), self.blocks.get(&block(cell)));
-            }
-            last.1
-                .is_some_and(|block| block[within(cell)].iter().any(&mut is))
-        })
+    fn remove(&mut self, node: u32, p: Point) {
+        let head = self.heads.at(self.heads.grid.cell(p));
+        let next = self.links[node as usize].1;
+        if *head == node + 1 {
+            *head = next;
+            return;
+        }
+        let mut before = *head as usize - 1;
+        while self.links[before].1 != node + 1 {
+            before = self.links[before].1 as usize - 1;
+        }
+        self.links[before].1 = next;
     }
 }
 
@@ -86,23 +82,28 @@ impl Held {
 }
 
 impl Index {
-    /// An empty index for edges of about `side` grid units.
-    pub(super) fn new(side: f64) -> Index {
+    /// An empty index for edges of about `side` grid units between so many nodes, most of them in
+    /// the window.
+    pub(super) fn new(side: f64, window: Window, nodes: usize) -> Index {
+        let grid = Grid::over(window, side, CELLS_A_NODE * (nodes + 64));
         Index {
-            edges: Cells::new(side),
+            edges: Cells::new(grid, nodes / NODES_A_BLOCK),
             nodes: None,
         }
     }
 
     pub(super) fn insert(&mut self, held: Held) {
-        passed(self.edges.side, held.at[0], held.at[1], 0.0, |cell| {
+        let [a, b] = held.at;
+        let grid = self.edges.grid;
+        grid.passed(a, b, 0.0, |cell| {
             self.edges.at(cell).push(held);
             false
         });
     }
 
     pub(super) fn remove(&mut self, edge: u32, a: Point, b: Point) {
-        passed(self.edges.side, a, b, 0.0, |cell| {
+        let grid = self.edges.grid;
+        grid.passed(a, b, 0.0, |cell| {
             let held = self.edges.at(cell);
             let at = held.iter().position(|it| it.edge == edge);
             held.swap_remove(at.expect("an edge occupies all its cells"));
@@ -112,8 +113,8 @@ impl Index {
 
     /// An edge that was between these points and is now as `held` says.
     pub(super) fn replace(&mut self, [p, q]: [Point; 2], held: Held) {
-        let side = self.edges.side;
-        let (was, is) = (box_of(side, p, q), box_of(side, held.at[0], held.at[1]));
+        let grid = self.edges.grid;
+        let (was, is) = (grid.box_of(p, q), grid.box_of(held.at[0], held.at[1]));
         if was != is || !was.is_row() {
             self.remove(held.edge, p, q);
             self.insert(held);
@@ -130,23 +131,23 @@ impl Index {
 
     /// Takes up all nodes, and from now on each one that is inserted.
     pub(super) fn take_nodes(&mut self, at: &[Point]) {
-        self.nodes = Some(Cells::new(NODE_CELL * self.edges.side));
-        (0..)
-            .zip(at)
-            .for_each(|(node, &p)| self.insert_node(node, p));
+        let mut chains = Chains {
+            heads: Cells::new(self.edges.grid.finer(NODE_CELL), at.len() / NODES_A_BLOCK),
+            links: Vec::with_capacity(at.len()),
+        };
+        (0..).zip(at).for_each(|(node, &p)| chains.insert(node, p));
+        self.nodes = Some(chains);
     }
 
     pub(super) fn insert_node(&mut self, node: u32, p: Point) {
         if let Some(nodes) = &mut self.nodes {
-            nodes.at(nodes.cell(p)).push((node, p));
+            nodes.insert(node, p);
         }
     }
 
     pub(super) fn remove_node(&mut self, node: u32, p: Point) {
         if let Some(nodes) = &mut self.nodes {
-            let held = nodes.at(nodes.cell(p));
-            let at = held.iter().position(|it| it.0 == node);
-            held.swap_remove(at.expect("a node is in its cell"));
+            nodes.remove(node, p);
         }
     }
 
@@ -188,12 +189,16 @@ impl Index {
         margin: f64,
         mut is: impl FnMut(&Held) -> bool,
     ) -> bool {
-        self.edges.any(a, b, margin + 1.0, |it| {
-            let [p, q] = it.at;
-            // one branch for all four: it is taken by few
-            let is_aside =
-                (q.x < low.x) | (p.x > high.x) | (p.y.max(q.y) < low.y) | (p.y.min(q.y) > high.y);
-            !is_aside && is(it)
+        self.edges.grid.passed(a, b, margin + 1.0, |cell| {
+            self.edges.get(cell).iter().any(|it| {
+                let [p, q] = it.at;
+                // one branch for all four: it is taken by few
+                let is_aside = (q.x < low.x)
+                    | (p.x > high.x)
+                    | (p.y.max(q.y) < low.y)
+                    | (p.y.min(q.y) > high.y);
+                !is_aside && is(it)
+            })
         })
     }
 
@@ -201,28 +206,45 @@ impl Index {
     /// each once.
     pub(super) fn edges_near(&self, p: Point, reach: f64, found: &mut Vec<u32>) {
         found.clear();
+        self.each_edge_near(p, reach, |held| found.push(held.edge));
+        found.sort_unstable();
+        found.dedup();
+    }
+
+    /// The same in no order that means anything, and some are told twice.
+    #[inline]
+    pub(super) fn each_edge_near(&self, p: Point, reach: f64, mut tell: impl FnMut(&Held)) {
         self.any(p, p, reach, |held| {
             if is_within(p, held.at, reach) {
-                found.push(held.edge);
+                tell(held);
             }
             false
         });
-        found.sort_unstable();
-        found.dedup();
     }
 
     /// The nodes within `reach` of the segment `a b`, its ends included, and now and then one that
     /// is a cell farther; sorted, each once. Nodes without edges too, if they were taken up.
     pub(super) fn nodes_near(&self, a: Point, b: Point, reach: f64, found: &mut Vec<u32>) {
         found.clear();
+        self.each_node_near(a, b, reach, |node| found.push(node));
+        found.sort_unstable();
+    }
+
+    /// The same, each once, in no order that means anything.
+    #[inline]
+    pub(super) fn each_node_near(&self, a: Point, b: Point, reach: f64, mut tell: impl FnMut(u32)) {
         let nodes = self.nodes.as_ref().expect("nodes were taken up");
-        nodes.any(a, b, reach + 1.0, |&(node, p)| {
-            if is_within(p, [a, b], reach) {
-                found.push(node);
+        nodes.heads.grid.passed(a, b, reach + 1.0, |cell| {
+            let mut next = *nodes.heads.get(cell);
+            while next > 0 {
+                let (p, after) = nodes.links[next as usize - 1];
+                if is_within(p, [a, b], reach) {
+                    tell(next - 1);
+                }
+                next = after;
             }
             false
         });
-        found.sort_unstable();
     }
 }
 
@@ -249,99 +271,4 @@ fn is_within(p: Point, [a, b]: [Point; 2], reach: f64) -> bool {
         let area = u[0] * v[1] - u[1] * v[0];
         area * area <= limit2 * length2
     }
-}
-
-fn block((column, row): (i32, i32)) -> (i32, i32) {
-    (column >> BLOCK, row >> BLOCK)
-}
-
-fn within((column, row): (i32, i32)) -> usize {
-    let low = (1 << BLOCK) - 1;
-    (((row & low) << BLOCK) | (column & low)) as usize
-}
-
-/// The next integer below; without a call, which `f64::floor` is on machines of no certain age.
-fn floor(v: f64) -> i32 {
-    let cut = v as i32;
-    cut - i32::from(f64::from(cut) > v)
-}
-
-/// A rectangle of cells.
-#[derive(Clone, Copy, PartialEq, Eq)]
-struct Range {
-    first: i32,
-    last: i32,
-    bottom: i32,
-    top: i32,
-}
-
-impl Range {
-    fn of(side: f64, low: [f64; 2], high: [f64; 2]) -> Range {
-        let per_side = 1.0 / side;
-        let cell = |v: f64| floor(v * per_side);
-        Range {
-            first: cell(low[0]),
-            last: cell(high[0]),
-            bottom: cell(low[1]),
-            top: cell(high[1]),
-        }
-    }
-
-    /// True if a segment from side to side passes all of it.
-    fn is_row(&self) -> bool {
-        self.first == self.last || self.bottom == self.top
-    }
-
-    /// Calls `visit` for every cell, until it says true.
-    fn any(&self, mut visit: impl FnMut((i32, i32)) -> bool) -> bool {
-        let mut columns = self.first..=self.last;
-        columns.any(|column| (self.bottom..=self.top).any(|row| visit((column, row))))
-    }
-}
-
-/// The cells of the bounding box of a segment.
-fn box_of(side: f64, p: Point, q: Point) -> Range {
-    let low = [p.x.min(q.x), p.y.min(q.y)].map(f64::from);
-    let high = [p.x.max(q.x), p.y.max(q.y)].map(f64::from);
-    Range::of(side, low, high)
-}
-
-/// Calls `visit` for every cell within `margin` of the segment, until it says true: column by
-/// column, the rows that the segment passes inside the column widened by the margin.
-fn passed(
-    side: f64,
-    p: Point,
-    q: Point,
-    margin: f64,
-    mut visit: impl FnMut((i32, i32)) -> bool,
-) -> bool {
-    let (a, b) = (p.min(q), p.max(q));
-    let (ax, ay) = (f64::from(a.x), f64::from(a.y));
-    let (bx, by) = (f64::from(b.x), f64::from(b.y));
-    let (low, high) = (ay.min(by), ay.max(by));
-    let range = Range::of(
-        side,
-        [ax - margin, low - margin],
-        [bx + margin, high + margin],
-    );
-    if range.is_row() {
-        // most segments are shorter than a cell
-        return range.any(visit);
-    }
-    let per_side = 1.0 / side;
-    let cell = |v: f64| floor(v * per_side);
-    let Range { first, last, .. } = range;
-    let slope = if bx > ax { (by - ay) / (bx - ax) } else { 0.0 };
-    (first..=last).any(|column| {
-        let from = (f64::from(column) * side - margin).clamp(ax, bx);
-        let to = (f64::from(column + 1) * side + margin).clamp(ax, bx);
-        let (y0, y1) = if bx > ax {
-            (ay + slope * (from - ax), ay + slope * (to - ax))
-        } else {
-            (ay, by)
-        };
-        let bottom = (y0.min(y1) - 1.0).clamp(low, high) - margin;
-        let top = (y0.max(y1) + 1.0).clamp(low, high) + margin;
-        (cell(bottom)..=cell(top)).any(|row| visit((column, row)))
-    })
 }

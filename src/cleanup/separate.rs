@@ -60,8 +60,6 @@ struct Queue {
     heap: BinaryHeap<Reverse<(u64, Point, u32)>>,
     /// The key under which each node waits; all other entries of it are stale.
     key: Vec<u64>,
-    /// Scratch.
-    found: Vec<u32>,
 }
 
 const NOT_WAITING: u64 = u64::MAX;
@@ -96,7 +94,6 @@ pub(super) fn separate(graph: &mut Graph, narrow: &Narrow, nodes: &[u32]) {
     let mut queue = Queue {
         heap: BinaryHeap::new(),
         key: Vec::new(),
-        found: Vec::new(),
     };
     for &node in nodes {
         push(graph, narrow, node, &mut queue);
@@ -116,7 +113,7 @@ pub(super) fn separate(graph: &mut Graph, narrow: &Narrow, nodes: &[u32]) {
         if tries[node as usize] == TRIES_MAX {
             continue;
         }
-        let conflicts = conflicts(graph, narrow, node, &mut queue.found);
+        let conflicts = conflicts(graph, narrow, node);
         let Some(first) = conflicts.first() else {
             continue;
         };
@@ -124,31 +121,36 @@ pub(super) fn separate(graph: &mut Graph, narrow: &Narrow, nodes: &[u32]) {
             queue.push(graph, node, first.ratio);
             continue;
         }
+        let mark = graph.changed.len();
         let resolved = (conflicts.iter()).find_map(|it| resolve(graph, narrow, node, it.with));
         if let Some(centre) = resolved {
             tries.resize(graph.at.len(), 0);
             let tried = tries[node as usize].max(tries[centre as usize]) + 1;
             (tries[node as usize], tries[centre as usize]) = (tried, tried);
-            push_around(graph, narrow, centre, &mut queue);
+            push(graph, narrow, centre, &mut queue);
+            push_beside_changed(graph, narrow, mark, &mut queue);
         }
     }
 }
 
 fn push(graph: &Graph, narrow: &Narrow, node: u32, queue: &mut Queue) {
     let mut least = f64::INFINITY;
-    each_conflict(graph, narrow, node, &mut queue.found, |it| {
-        least = least.min(it.ratio);
-    });
+    each_conflict(graph, narrow, node, |it| least = least.min(it.ratio));
     if least < f64::INFINITY {
         queue.push(graph, node, least);
     }
 }
 
-/// Queues `centre`, and all nodes that its edges are too near to.
-fn push_around(graph: &Graph, narrow: &Narrow, centre: u32, queue: &mut Queue) {
-    push(graph, narrow, centre, queue);
-    for &edge in &graph.star[centre as usize] {
-        push_beside(graph, narrow, edge, queue);
+/// Queues all nodes beside edges that changed since `changed` had this length. Beside the other
+/// edges of the same nodes all is as it was, and what failed there would nearly always fail again.
+fn push_beside_changed(graph: &Graph, narrow: &Narrow, mark: usize, queue: &mut Queue) {
+    let mut edges: SmallVec<[u32; 16]> = graph.changed[mark..].into();
+    edges.sort_unstable();
+    edges.dedup();
+    for edge in edges {
+        if graph.is_there(edge) {
+            push_beside(graph, narrow, edge, queue);
+        }
     }
 }
 
@@ -163,23 +165,21 @@ fn push_beside(graph: &Graph, narrow: &Narrow, edge: u32, queue: &mut Queue) {
             .for_each(|&end| queue.push(graph, end, ratio));
     }
     let reach = narrow.gap.max(narrow.end) * it.size_m;
+    let reach = reach / graph.measure.grid().cell_m;
     let [a, b] = it.ends.map(|node| graph.point(node));
-    let mut found = std::mem::take(&mut queue.found);
-    (graph.index).nodes_near(a, b, reach / graph.measure.grid().cell_m, &mut found);
-    for &node in &found {
-        let (is_there, size) = (graph.degree(node) > 0, graph.size_at_m(node));
-        if is_there && let Some(ratio) = gap_ratio(graph, narrow, (node, size), edge) {
+    graph.index.each_node_near(a, b, reach, |node| {
+        let is_other = !it.ends.contains(&node) && graph.degree(node) > 0;
+        if is_other && let Some(ratio) = gap_ratio(graph, narrow, node, edge) {
             queue.push(graph, node, ratio);
         }
-    }
-    queue.found = found;
+    });
 }
 
 /// How narrow the gap between a node and an edge that is not its own is, if it is too narrow.
-/// The node comes with its size, metres.
-fn gap_ratio(graph: &Graph, narrow: &Narrow, (node, size_m): (u32, f64), edge: u32) -> Option<f64> {
+fn gap_ratio(graph: &Graph, narrow: &Narrow, node: u32, edge: u32) -> Option<f64> {
     let is_end = graph.degree(node) == 1;
     let share = if is_end { narrow.end } else { narrow.gap };
+    let size_m = graph.size_at_m(node);
     let limit = share * size_m.min(graph.edges[edge as usize].size_m);
     gap_below_m(graph, node, edge, limit)
         .map(|gap| gap / limit)
@@ -187,31 +187,26 @@ fn gap_ratio(graph: &Graph, narrow: &Narrow, (node, size_m): (u32, f64), edge: u
 }
 
 /// All conflicts of a node, the narrowest first.
-fn conflicts(
-    graph: &Graph,
-    narrow: &Narrow,
-    node: u32,
-    found: &mut Vec<u32>,
-) -> SmallVec<[Conflict; 4]> {
+fn conflicts(graph: &Graph, narrow: &Narrow, node: u32) -> SmallVec<[Conflict; 4]> {
     let mut conflicts: SmallVec<[Conflict; 4]> = SmallVec::new();
-    each_conflict(graph, narrow, node, found, |it| conflicts.push(it));
-    conflicts.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
+    each_conflict(graph, narrow, node, |it| conflicts.push(it));
+    // neighbours tie in the order of the star, edges in that of their ids
+    let tie = |it: &Conflict| match it.with {
+        With::Neighbour(_) => 0,
+        With::Edge(edge) => edge + 1,
+    };
+    conflicts.sort_by(|a, b| (a.ratio.total_cmp(&b.ratio)).then(tie(a).cmp(&tie(b))));
+    conflicts.dedup();
     conflicts
 }
 
-/// Tells of all conflicts of a node, in an order that depends on ids alone.
-fn each_conflict(
-    graph: &Graph,
-    narrow: &Narrow,
-    node: u32,
-    found: &mut Vec<u32>,
-    mut tell: impl FnMut(Conflict),
-) {
+/// Tells of all conflicts of a node, in no order that means anything but that of the neighbours, and
+/// of some twice.
+fn each_conflict(graph: &Graph, narrow: &Narrow, node: u32, mut tell: impl FnMut(Conflict)) {
     if graph.degree(node) == 0 {
         return;
     }
     let at = graph.metres(node);
-    let size = graph.size_at_m(node);
     for &edge in &graph.star[node as usize] {
         let other = graph.edges[edge as usize].other(node);
         let limit = narrow.edge * graph.edges[edge as usize].size_m;
@@ -223,14 +218,17 @@ fn each_conflict(
             });
         }
     }
-    let reach = narrow.gap.max(narrow.end) * size / graph.measure.grid().cell_m;
-    (graph.index).edges_near(graph.point(node), reach, found);
-    for &edge in &*found {
-        if let Some(ratio) = gap_ratio(graph, narrow, (node, size), edge) {
-            let with = With::Edge(edge);
-            tell(Conflict { ratio, with });
-        }
-    }
+    let reach = narrow.gap.max(narrow.end) * graph.size_at_m(node);
+    let reach = reach / graph.measure.grid().cell_m;
+    graph
+        .index
+        .each_edge_near(graph.point(node), reach, |held| {
+            let is_other = !held.ends.contains(&node);
+            if is_other && let Some(ratio) = gap_ratio(graph, narrow, node, held.edge) {
+                let with = With::Edge(held.edge);
+                tell(Conflict { ratio, with });
+            }
+        });
 }
 
 /// Distance from a node to an edge that is not its own, if the domain lies between them; `None`

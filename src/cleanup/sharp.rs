@@ -2,31 +2,38 @@
 
 use crate::geometry::point::Point;
 use crate::noding::arrangement::Arrangement;
+use crate::noding::arrangement::grouped;
 
 /// How many pairs of neighbouring edges around a node leave it at less than `below_deg` degrees.
 ///
-/// O(n log n) for n edges.
+/// O(n) for n edges, and the sorting of each node's own.
 pub(super) fn sharp_angles(arrangement: &Arrangement, below_deg: f64) -> u64 {
     let points = &arrangement.points;
-    let mut away: Vec<(u32, f64)> = (arrangement.edges.iter())
-        .flat_map(|&[a, b]| [(a, b), (b, a)])
-        .map(|(from, to)| {
-            (
-                from,
-                bearing_deg(points[from as usize], points[to as usize]),
-            )
-        })
-        .collect();
-    away.sort_by(|u, v| u.0.cmp(&v.0).then(u.1.total_cmp(&v.1)));
-    away.chunk_by(|u, v| u.0 == v.0)
-        .filter(|star| star.len() > 1)
-        .map(|star| {
-            let around = star[0].1 + 360.0 - star[star.len() - 1].1;
-            let gaps = star.windows(2).map(|pair| pair[1].1 - pair[0].1);
-            let is_sharp = |&gap: &f64| gap < below_deg;
-            gaps.chain([around]).filter(is_sharp).count() as u64
-        })
-        .sum()
+    let both = arrangement
+        .edges
+        .iter()
+        .flat_map(|&[a, b]| [[a, b], [b, a]]);
+    let halves: Vec<[u32; 2]> = both.collect();
+    let order = grouped(&halves, points.len(), |half| half[0] as usize);
+    let half = |it: u32| halves[it as usize];
+    let mut bearings_deg: Vec<f64> = Vec::new();
+    let mut sharp = 0;
+    for star in order.chunk_by(|&s, &t| half(s)[0] == half(t)[0]) {
+        if star.len() == 1 {
+            continue;
+        }
+        bearings_deg.clear();
+        let ends = star
+            .iter()
+            .map(|&it| half(it).map(|node| points[node as usize]));
+        bearings_deg.extend(ends.map(|[from, to]| bearing_deg(from, to)));
+        bearings_deg.sort_unstable_by(f64::total_cmp);
+        let around = bearings_deg[0] + 360.0 - bearings_deg[star.len() - 1];
+        let gaps = bearings_deg.windows(2).map(|pair| pair[1] - pair[0]);
+        let is_sharp = |&gap: &f64| gap < below_deg;
+        sharp += gaps.chain([around]).filter(is_sharp).count() as u64;
+    }
+    sharp
 }
 
 fn bearing_deg(from: Point, to: Point) -> f64 {

@@ -17,6 +17,7 @@ use crate::geometry::point::Xy;
 use crate::geometry::quad::distance;
 use crate::noding::arrangement::Arrangement;
 use crate::noding::arrangement::Piece;
+use crate::noding::arrangement::grouped;
 use std::collections::BTreeMap;
 
 /// Stations nearer than this are the same, metres: rounding of sums.
@@ -59,18 +60,19 @@ pub(super) fn thread(
             }
         }
     }
-    by_line.sort_by(|(k, a), (l, b)| {
-        (k.cmp(l))
-            .then(a.low_m.total_cmp(&b.low_m))
-            .then(a.high_m.total_cmp(&b.high_m))
-            .then(a.edge.cmp(&b.edge))
-    });
+    let order = grouped(&by_line, domain.lines.len(), |it| it.0 as usize);
+    let line_of = |it: u32| by_line[it as usize].0;
     let stars = Stars::of(&arrangement);
     let mut torn = Vec::new();
     let mut threaded: Vec<(u32, Piece)> = others;
-    for run in by_line.chunk_by(|a, b| a.0 == b.0) {
-        let line = run[0].0;
-        let steps: Vec<Step> = run.iter().map(|it| it.1).collect();
+    for run in order.chunk_by(|&s, &t| line_of(s) == line_of(t)) {
+        let line = line_of(run[0]);
+        let mut steps: Vec<Step> = run.iter().map(|&it| by_line[it as usize].1).collect();
+        steps.sort_by(|a, b| {
+            (a.low_m.total_cmp(&b.low_m))
+                .then(a.high_m.total_cmp(&b.high_m))
+                .then(a.edge.cmp(&b.edge))
+        });
         let limit_m = tolerance_m[line as usize];
         // What should be there: beyond it, the line had left the domain, or was given up.
         let given = of_line(given, line, |it| it.0);
@@ -198,21 +200,28 @@ fn piece(arrangement: &Arrangement, line: LineId, step: &Step) -> Piece {
     }
 }
 
-fn with_pieces(arrangement: Arrangement, mut pieces: Vec<(u32, Piece)>) -> Arrangement {
-    pieces.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.order(&b.1)));
-    pieces.dedup();
-    let mut start = vec![0; arrangement.edges.len() + 1];
-    for (edge, _) in &pieces {
-        start[*edge as usize + 1] += 1;
-    }
-    for edge in 0..arrangement.edges.len() {
-        start[edge + 1] += start[edge];
-    }
-    Arrangement {
-        piece_start: start,
-        pieces: pieces.into_iter().map(|it| it.1).collect(),
+fn with_pieces(arrangement: Arrangement, pieces: Vec<(u32, Piece)>) -> Arrangement {
+    let edges = arrangement.edges.len();
+    let mut made = Arrangement {
+        piece_start: Vec::with_capacity(edges + 1),
+        pieces: Vec::with_capacity(pieces.len()),
         ..arrangement
+    };
+    let order = grouped(&pieces, edges, |it| it.0 as usize);
+    let mut order = order.iter().map(|&it| pieces[it as usize]).peekable();
+    let mut here: Vec<Piece> = Vec::new();
+    made.piece_start.push(0);
+    for edge in 0..edges as u32 {
+        here.clear();
+        while let Some((_, piece)) = order.next_if(|it| it.0 == edge) {
+            here.push(piece);
+        }
+        here.sort_by(Piece::order);
+        here.dedup();
+        made.pieces.extend_from_slice(&here);
+        made.piece_start.push(made.pieces.len() as u32);
     }
+    made
 }
 
 /// The point of `line` at `station_m`, local metres. O(points of the line); tears are few.
@@ -234,23 +243,28 @@ struct Stars {
 
 impl Stars {
     fn of(arrangement: &Arrangement) -> Stars {
-        let mut all: Vec<(u32, u32, u32)> = Vec::with_capacity(2 * arrangement.edges.len());
-        for (edge, &[a, b]) in arrangement.edges.iter().enumerate() {
-            all.push((a, b, edge as u32));
-            all.push((b, a, edge as u32));
+        let nodes = arrangement.points.len();
+        let mut halves: Vec<[u32; 3]> = Vec::with_capacity(2 * arrangement.edges.len());
+        for (&[a, b], edge) in arrangement.edges.iter().zip(0..) {
+            halves.extend([[a, b, edge], [b, a, edge]]);
         }
-        all.sort_unstable();
-        let mut start = vec![0; arrangement.points.len() + 1];
-        for (node, ..) in &all {
-            start[*node as usize + 1] += 1;
+        let order = grouped(&halves, nodes, |half| half[0] as usize);
+        let mut start = vec![0; nodes + 1];
+        for half in &halves {
+            start[half[0] as usize + 1] += 1;
         }
-        for node in 0..arrangement.points.len() {
+        for node in 0..nodes {
             start[node + 1] += start[node];
         }
-        let out = all
-            .into_iter()
-            .map(|(_, other, edge)| (other, edge))
-            .collect();
+        let mut out = Vec::with_capacity(halves.len());
+        for star in order.chunk_by(|&s, &t| halves[s as usize][0] == halves[t as usize][0]) {
+            let from = out.len();
+            out.extend(star.iter().map(|&it| {
+                let [_, other, edge] = halves[it as usize];
+                (other, edge)
+            }));
+            out[from..].sort_unstable();
+        }
         Stars { start, out }
     }
 

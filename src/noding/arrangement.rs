@@ -102,25 +102,27 @@ impl Arrangement {
             }
         }
         stretches.retain(|(edge, _)| edge[0] != edge[1]);
-        let mut stretches = grouped(stretches, points.len(), |(edge, _)| edge[0] as usize);
-        for from_node in stretches.chunk_by_mut(|s, t| s.0[0] == t.0[0]) {
-            from_node.sort_unstable_by(|(e, p), (f, q)| {
+        let at = |it: u32| &stretches[it as usize];
+        let mut order = grouped(&stretches, points.len(), |(edge, _)| edge[0] as usize);
+        for from_node in order.chunk_by_mut(|&s, &t| at(s).0[0] == at(t).0[0]) {
+            from_node.sort_unstable_by(|&s, &t| {
+                let ((e, p), (f, q)) = (at(s), at(t));
                 e.cmp(f).then_with(|| match (p, q) {
                     (Some(p), Some(q)) => p.order(q),
                     _ => p.is_some().cmp(&q.is_some()),
                 })
             });
         }
-        stretches.dedup();
+        order.dedup_by(|&mut t, &mut s| at(s) == at(t));
         let mut made = Arrangement {
             points,
+            edges: Vec::with_capacity(order.len()),
             piece_start: vec![0],
-            ..Arrangement::default()
+            pieces: Vec::with_capacity(order.len()),
         };
-        for same in stretches.chunk_by(|s, t| s.0 == t.0) {
-            made.edges.push(same[0].0);
-            made.pieces
-                .extend(same.iter().filter_map(|(_, piece)| *piece));
+        for same in order.chunk_by(|&s, &t| at(s).0 == at(t).0) {
+            made.edges.push(at(same[0]).0);
+            made.pieces.extend(same.iter().filter_map(|&it| at(it).1));
             made.piece_start.push(made.pieces.len() as u32);
         }
         made.drop_unused_points();
@@ -155,27 +157,27 @@ impl Arrangement {
     }
 }
 
-/// The same in the order of their keys, which are below `keys`: for keys of which each is on few, so
-/// that what is left to sort is short. O(n + keys).
-pub(super) fn grouped<T: Copy>(all: Vec<T>, keys: usize, key: impl Fn(&T) -> usize) -> Vec<T> {
-    let mut next = vec![0; keys + 1];
-    for it in &all {
+/// Their places in the order of their keys, which are below `keys`: for keys of which each is on few,
+/// so that what is left to sort is short. Equal keys keep their order. O(n + keys).
+pub(crate) fn grouped<T>(all: &[T], keys: usize, key: impl Fn(&T) -> usize) -> Vec<u32> {
+    let mut next = vec![0_u32; keys + 1];
+    for it in all {
         next[key(it) + 1] += 1;
     }
     for k in 0..keys {
         next[k + 1] += next[k];
     }
     let mut order = vec![0_u32; all.len()];
-    for (at, it) in (0..).zip(&all) {
-        let place: &mut usize = &mut next[key(it)];
-        order[*place] = at;
+    for (at, it) in (0..).zip(all) {
+        let place = &mut next[key(it)];
+        order[*place as usize] = at;
         *place += 1;
     }
-    order.iter().map(|&at| all[at as usize]).collect()
+    order
 }
 
 /// The different points in order, and for each given point its place there.
-fn sorted_points(given: &[Point]) -> (Vec<Point>, Vec<u32>) {
+pub(crate) fn sorted_points(given: &[Point]) -> (Vec<Point>, Vec<u32>) {
     let mut order: Vec<(Point, u32)> = given.iter().copied().zip(0..).collect();
     order.sort_unstable();
     let mut points = Vec::with_capacity(given.len());

@@ -17,9 +17,12 @@ use crate::noding::winding::sides_inside;
 pub fn clip(domain: &Domain, arrangement: Arrangement) -> (Arrangement, Vec<Piece>) {
     let inside = sides_inside(domain, &arrangement);
     let mut kept = Arrangement {
-        piece_start: vec![0],
-        ..Arrangement::default()
+        points: Vec::new(),
+        edges: Vec::with_capacity(arrangement.edges.len()),
+        piece_start: Vec::with_capacity(arrangement.piece_start.len()),
+        pieces: Vec::with_capacity(arrangement.pieces.len()),
     };
+    kept.piece_start.push(0);
     let mut outside = Vec::new();
     for (edge, sides) in inside.into_iter().enumerate() {
         let pieces = arrangement.pieces_of(edge as u32);

@@ -31,7 +31,7 @@
 //! # Cost
 //! O((n + k) log n) for n segments and k incidences of segments and hot pixels; a segment enters
 //! only tiles that it passes. Memory: 8 bytes a segment and tile, 16 an incidence; stitching adds
-//! 24 an incidence and 40 a piece for as long as it sorts.
+//! 28 an incidence and 44 a piece for as long as it sorts.
 //!
 //! # Not here
 //! Anything with a length: near misses, slivers and short ends are `cleanup`'s. Faces are

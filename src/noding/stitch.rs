@@ -9,7 +9,7 @@ use crate::noding::arrangement::grouped;
 use crate::noding::hot::TileNodes;
 use crate::noding::tile::Segment;
 
-/// A node on a segment; sorted, the nodes of each segment follow each other along it.
+/// A node on a segment; sorted, the nodes of a segment follow each other along it.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Stop {
     segment: Segment,
@@ -40,23 +40,26 @@ pub fn stitch(domain: &Domain, tiles: Vec<TileNodes>) -> Arrangement {
         first.push(first[first.len() - 1] + line.points.len());
     }
     let segment = |it: &Stop| first[it.segment.line as usize] + it.segment.at as usize;
-    let mut stops = grouped(stops, first[first.len() - 1], segment);
-    for of_segment in stops.chunk_by_mut(|s, t| s.segment == t.segment) {
-        of_segment.sort_unstable();
-    }
-    Arrangement::from_stretches(&points, stretches(domain, &stops))
+    let order = grouped(&stops, first[first.len() - 1], segment);
+    let stretches = stretches(domain, &stops, &order);
+    drop((stops, order));
+    Arrangement::from_stretches(&points, stretches)
 }
 
-/// One stretch from each stop of a segment to the next.
-fn stretches(domain: &Domain, stops: &[Stop]) -> Vec<([u32; 2], Option<Piece>)> {
+/// One stretch from each stop of a segment to the next. `order`: of the stops, by segment.
+fn stretches(domain: &Domain, stops: &[Stop], order: &[u32]) -> Vec<([u32; 2], Option<Piece>)> {
     let mut made = Vec::with_capacity(stops.len());
-    let mut at_m = Vec::new();
-    for of_line in stops.chunk_by(|s, t| s.segment.line == t.segment.line) {
-        let line = of_line[0].segment.line;
+    let (mut here, mut at_m) = (Vec::new(), Vec::new());
+    let segment = |it: u32| stops[it as usize].segment;
+    for of_line in order.chunk_by(|&s, &t| segment(s).line == segment(t).line) {
+        let line = segment(of_line[0]).line;
         let stations = domain.stations_m(line);
-        for of_segment in of_line.chunk_by(|s, t| s.segment == t.segment) {
-            stations_of(domain, &stations, of_segment, &mut at_m);
-            for (pair, at_m) in of_segment.windows(2).zip(at_m.windows(2)) {
+        for of_segment in of_line.chunk_by(|&s, &t| segment(s) == segment(t)) {
+            here.clear();
+            here.extend(of_segment.iter().map(|&it| stops[it as usize]));
+            here.sort_unstable();
+            stations_of(domain, &stations, &here, &mut at_m);
+            for (pair, at_m) in here.windows(2).zip(at_m.windows(2)) {
                 let (from_m, to_m) = (at_m[0], at_m[1]);
                 let piece = Piece { line, from_m, to_m };
                 made.push(([pair[0].node, pair[1].node], Some(piece)));

@@ -19,20 +19,21 @@ type Winding = [i32; 2];
 /// they are in the status, and all comparisons are in doubled grid coordinates.
 /// O((edges + ring edges) log(ring edges)).
 pub fn sides_inside(domain: &Domain, arrangement: &Arrangement) -> Vec<[bool; 2]> {
-    let edges: Vec<(Span, Winding)> = (arrangement.edges.iter().zip(0..))
-        .map(|(ends, edge)| {
-            let span = Span::between(ends.map(|node| doubled(arrangement, node)));
-            (span, net_winding(domain, arrangement.pieces_of(edge)))
-        })
-        .collect();
-    let mut by_middle: Vec<usize> = (0..edges.len()).collect();
-    by_middle.sort_unstable_by_key(|&edge| edges[edge].0.middle().y);
-    let mut sweep = Sweep::over(&edges);
-    let mut inside = vec![[false; 2]; edges.len()];
-    for edge in by_middle {
-        let (span, net) = edges[edge];
-        sweep.advance(span.middle().y);
-        inside[edge] = sides(sweep.west_of(&Span::at(span.middle())), span, net);
+    let span = |edge: u32| {
+        let ends = arrangement.edges[edge as usize];
+        Span::between(ends.map(|node| doubled(arrangement, node)))
+    };
+    let net = |edge: u32| net_winding(domain, arrangement.pieces_of(edge));
+    let edges = 0..arrangement.edges.len() as u32;
+    let mut sweep = Sweep::over(edges.clone().map(|edge| (span(edge), net(edge))));
+    let mut by_middle: Vec<(i64, u32)> = edges.map(|it| (span(it).middle().y, it)).collect();
+    by_middle.sort_unstable();
+    let mut inside = vec![[false; 2]; arrangement.edges.len()];
+    for (y, edge) in by_middle {
+        let span = span(edge);
+        sweep.advance(y);
+        let beside = sweep.west_of(&Span::at(span.middle()));
+        inside[edge as usize] = sides(beside, span, net(edge));
     }
     inside
 }
@@ -48,9 +49,9 @@ struct Sweep {
 }
 
 impl Sweep {
-    fn over(edges: &[(Span, Winding)]) -> Sweep {
-        let mut starts = edges.to_vec();
-        starts.retain(|(span, net)| *net != [0, 0] && !span.is_level());
+    fn over(edges: impl Iterator<Item = (Span, Winding)>) -> Sweep {
+        let of_rings = edges.filter(|(span, net)| *net != [0, 0] && !span.is_level());
+        let mut starts: Vec<(Span, Winding)> = of_rings.collect();
         starts.sort_unstable_by(|(s, _), (t, _)| s.start_order(t));
         let mut ends: Vec<Span> = starts.iter().map(|(span, _)| *span).collect();
         ends.sort_unstable_by_key(|span| span.high.y);

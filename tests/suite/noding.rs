@@ -368,6 +368,29 @@ proptest! {
     }
 }
 
+/// Many segments in one place: crossing each other, side by side or equal, and from one point.
+#[test]
+fn heaps_bundles_and_stars_among_long_lines() {
+    let mut lines = Vec::new();
+    for k in 0..50 {
+        let [a, b] = [(k * 131 % 400, k * 57 % 400), (k * 211 % 400, k * 89 % 400)];
+        lines.push(vec![
+            (900_000 + a.0, 700_000 + a.1),
+            (900_000 + b.0, 700_000 + b.1),
+        ]);
+        lines.push(vec![(0, 0), (1_000_000, 777_777)]);
+        lines.push(vec![(0, 4 * k), (1_000_000, 777_777 + 4 * k)]);
+        lines.push(vec![
+            (500_000, 200_000),
+            (500_000 + 20 * k, 204_000 - 13 * k),
+        ]);
+    }
+    lines.retain(|line| line[0] != line[1]);
+    let domain = constraints(lines);
+    let made = assert_noded(&domain, &[300, 90_000]);
+    assert_same(&made, &node_twin(&domain));
+}
+
 #[test]
 fn long_segments_at_the_limit_of_the_grid() {
     let e = 1 << 29;
