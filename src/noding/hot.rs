@@ -11,6 +11,7 @@ use crate::noding::tile::rows;
 use rstar::AABB;
 use rstar::RTree;
 use rstar::RTreeObject;
+use rstar::primitives::GeomWithData;
 
 /// What noding found in one tile.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -53,20 +54,25 @@ pub fn node_tile(domain: &Domain, tile: &Tile) -> TileNodes {
     }
     points.sort_unstable();
     points.dedup();
-    let mut incidences = Vec::with_capacity(points.len() * 3);
-    let mut here = Vec::new();
-    for (node, &p) in points.iter().enumerate() {
-        here.clear();
-        for passing in tree.locate_in_envelope_intersecting(AABB::from_point([p.x, p.y])) {
-            if passes_pixel(passing.a, passing.b, p) {
-                here.push(passing.index);
-            }
-        }
-        here.sort_unstable();
-        let of = |&index: &u32| (tile.segments[index as usize], node as u32);
-        incidences.extend(here.iter().map(of));
-    }
+    let mut passed = passages(&tree, &points);
+    passed.sort_unstable();
+    let of = |(node, index): (u32, u32)| (tile.segments[index as usize], node);
+    let incidences = passed.into_iter().map(of).collect();
     TileNodes { points, incidences }
+}
+
+/// Which segment passes which of the hot pixels: (pixel, segment), in no order.
+fn passages(tree: &RTree<Passing>, points: &[Point]) -> Vec<(u32, u32)> {
+    let pixels = points.iter().zip(0..);
+    let pixels = pixels.map(|(p, node)| GeomWithData::new([p.x, p.y], node));
+    let pixels = RTree::bulk_load(pixels.collect());
+    let near = tree.intersection_candidates_with_other_tree(&pixels);
+    near.filter(|(passing, pixel)| {
+        let &[x, y] = pixel.geom();
+        passes_pixel(passing.a, passing.b, Point::new(x, y))
+    })
+    .map(|(passing, pixel)| (pixel.data, passing.index))
+    .collect()
 }
 
 fn passing(domain: &Domain, tile: &Tile) -> Vec<Passing> {
@@ -94,16 +100,9 @@ fn passing(domain: &Domain, tile: &Tile) -> Vec<Passing> {
 
 /// Rounded crossings of all pairs that the window owns, with repetitions.
 fn crossings(tree: &RTree<Passing>, window: Window) -> Vec<Point> {
-    let mut found = Vec::new();
-    for s in tree {
-        for t in tree.locate_in_envelope_intersecting(s.envelope()) {
-            if s.index < t.index
-                && let Some(p) = crossing(s.a, s.b, t.a, t.b)
-                && window.owns(p)
-            {
-                found.push(p);
-            }
-        }
-    }
-    found
+    let near = tree.intersection_candidates_with_other_tree(tree);
+    near.filter(|(s, t)| s.index < t.index)
+        .filter_map(|(s, t)| crossing(s.a, s.b, t.a, t.b))
+        .filter(|&p| window.owns(p))
+        .collect()
 }
