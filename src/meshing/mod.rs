@@ -20,8 +20,8 @@
 //! quality, each method makes a draft, `finish` cleans it up, smooths it and checks the promises,
 //! and `score` ranks it; an excellent patch ends the `contest` early.
 //!
-//! - `mapping`: one of the `patterns` (grid, stars of 3, 5 and 6, a 3-5 pair) over the whole of a
-//!   sub-domain with few sides.
+//! - `mapping`: one of the `patterns` (grid, stars of 3, 5 and 6 `spokes`, a 3-5 `pair`) over the
+//!   whole of a sub-domain with few sides.
 //! - `catalogue`: loops of up to twelve nodes that no pattern suits, by the best of all their
 //!   quadrangulations.
 //! - `looping`: `bridges` join all walks to one loop; `splitting` halves it by the best line again
@@ -70,6 +70,7 @@ mod last_resort;
 mod lattice;
 mod looping;
 mod mapping;
+mod pair;
 mod pairing;
 pub mod patch;
 mod patterns;
@@ -81,6 +82,7 @@ pub mod score;
 mod sheet;
 mod smooth;
 mod splitting;
+mod spokes;
 mod star;
 mod strip;
 mod strip_border;

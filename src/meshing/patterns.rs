@@ -6,18 +6,25 @@
 //! | 3, 5, 6 | `count[i] = spoke[i-1] + spoke[i+1]`, spokes from 1 up | star | one of 3, 5, 6 |
 //! | 4 | a line across a corner makes it two stars | pair | one of 3, one of 5 |
 //!
-//! A star joins a centre to a point on each side, which leaves a grid at each corner (Tarini 2021;
-//! Takayama and others 2014). For 3 and 5 sides the spokes follow from the counts; for 6 sides the
-//! equations split into two independent triples.
+//! Stars are in `spokes`, pairs in `pair`. Here corners are chosen: entries of the loop that turn,
+//! in every subset that the counts allow, ranked by how far the angles are from those of a grid and
+//! by the irregular nodes; the best few are laid, and the best shape wins. After Tarini (2021) and
+//! Takayama and others (2014).
+//!
+//! Cost: of a grid, the square of the loop's length at worst; of the others, at most 2^8 subsets of
+//! corners, each weighed in the length of the loop; of a pair, see its page.
 
 use std::f64::consts::FRAC_PI_2;
 use std::f64::consts::PI;
 
-use crate::geometry::point::Xy;
 use crate::meshing::contour::Contour;
+use crate::meshing::pair;
+use crate::meshing::pair::Cut;
 use crate::meshing::sheet::Mark;
 use crate::meshing::sheet::Shape;
 use crate::meshing::sheet::Sheet;
+use crate::meshing::spokes::lay_star;
+use crate::meshing::spokes::spokes;
 
 /// Below this interior angle an entry must be a corner of the pattern.
 const CORNER_MUST: f64 = 128.0 * PI / 180.0;
@@ -27,8 +34,6 @@ const CORNER_MAY: f64 = 158.0 * PI / 180.0;
 const REFLEX: f64 = 232.0 * PI / 180.0;
 /// What one irregular node is worth in misfit, radians².
 const IRREGULAR: f64 = 0.25;
-/// Longest loop for which pairs are searched.
-const PAIR_LONGEST: usize = 800;
 /// Most corners that a few-sided loop may seem to have.
 const MOST_CORNERS: usize = 8;
 /// Plans that fit worse are not tried, radians².
@@ -53,15 +58,6 @@ enum Search {
     Whole,
     /// Only to know how well they fit: of a pair, that it most likely exists.
     Promise,
-}
-
-/// A line across corner 0 of a loop with four sides: `before` edges up to it, `after` edges past it
-/// and `across` on the line itself make a triangle; the rest has five sides.
-#[derive(Clone, Copy, Debug)]
-struct Cut {
-    before: usize,
-    after: usize,
-    across: usize,
 }
 
 /// Lays the best pattern for `contour` and returns its shape, or lays nothing. All its quads have
@@ -91,7 +87,7 @@ pub(crate) fn lay(sheet: &mut Sheet, contour: &Contour) -> Option<Shape> {
 pub(crate) fn lay_over(sheet: &mut Sheet, contour: &Contour, corners: &[usize]) -> Option<Shape> {
     let counts = counts(contour.len(), corners);
     let plan = if counts.len() == 4 && !is_grid(&counts) {
-        pair_plan(contour, corners, 0.0)?
+        pair_plan(contour, corners, &counts, 0.0)?
     } else {
         if counts.len() != 4 {
             spokes(&counts)?;
@@ -197,7 +193,7 @@ fn plan_with_corners(contour: &Contour, corners: &[usize], search: Search) -> Op
         }
         let misfit = misfit + 2.0 * IRREGULAR;
         return match search {
-            Search::Whole => pair_plan(contour, corners, misfit),
+            Search::Whole => pair_plan(contour, corners, &counts, misfit),
             Search::Promise => Some(Plan {
                 misfit,
                 corners: corners.to_vec(),
@@ -212,6 +208,16 @@ fn plan_with_corners(contour: &Contour, corners: &[usize], search: Search) -> Op
         misfit: misfit + steps * IRREGULAR,
         corners: corners.to_vec(),
         cut: None,
+    })
+}
+
+/// The best pair over these corners: edges that differ from those of the loop are a misfit.
+fn pair_plan(contour: &Contour, corners: &[usize], counts: &[usize], misfit: f64) -> Option<Plan> {
+    let pair = pair::best(contour, corners, counts)?;
+    Some(Plan {
+        misfit: misfit + 0.5 * pair.stretch,
+        corners: pair.corners,
+        cut: Some(pair.cut),
     })
 }
 
@@ -239,164 +245,12 @@ pub(crate) fn counts(n: usize, corners: &[usize]) -> Vec<usize> {
         .collect()
 }
 
-/// Solves `count[i] = spoke[i-1] + spoke[i+1]` for whole spokes of at least 1, for 3, 5 or 6 sides;
-/// entries past the last side are 0.
-fn spokes(counts: &[usize]) -> Option<[usize; 6]> {
-    let spokes = loose_spokes(counts)?;
-    (spokes[..counts.len()].iter().all(|&spoke| spoke > 0)).then_some(spokes)
-}
-
-/// The same for spokes of at least 0.
-fn loose_spokes(counts: &[usize]) -> Option<[usize; 6]> {
-    let spokes = signed_spokes(counts)?;
-    (spokes.iter().all(|&spoke| spoke >= 0)).then(|| spokes.map(|spoke| spoke as usize))
-}
-
-/// The same for spokes of any sign: one side farther out makes its spoke longer by one, and changes
-/// no other.
-pub(crate) fn signed_spokes(counts: &[usize]) -> Option<[i64; 6]> {
-    let n = counts.len();
-    // Following steps of two from spoke i, the counts between them come with alternating sign.
-    let terms = match n {
-        3 | 6 => 3,
-        5 => 5,
-        _ => return None,
-    };
-    let mut spokes = [0; 6];
-    for i in 0..n {
-        let mut twice = 0;
-        for k in 0..terms {
-            let count = counts[(i + 2 * k + 1) % n] as i64;
-            twice += if k % 2 == 0 { count } else { -count };
-        }
-        if twice % 2 != 0 {
-            return None;
-        }
-        spokes[i] = twice / 2;
-    }
-    Some(spokes)
-}
-
-/// The best line across any of the four corners: each spoke and the line itself should have
-/// edges as long as those of the loop. O(count² x mismatch).
-fn pair_plan(contour: &Contour, corners: &[usize], misfit: f64) -> Option<Plan> {
-    if contour.len() > PAIR_LONGEST {
-        return None;
-    }
-    let size_m = contour.spacing_m.iter().sum::<f64>() / contour.len() as f64;
-    let mut best: Option<(f64, usize, Cut)> = None;
-    for turn in 0..4 {
-        let mut turned = corners.to_vec();
-        turned.rotate_left(turn);
-        let counts = counts(contour.len(), &turned);
-        // The spokes of triangle and pentagon to the line have this many edges together.
-        let excess = (counts[0] + counts[3]).saturating_sub(counts[1] + counts[2]) / 2;
-        for before in 1..counts[3] {
-            for after in 1..counts[0] {
-                for spoke in 0..excess.min(before).min(after) {
-                    let cut = Cut {
-                        before,
-                        after,
-                        across: before + after - 2 * spoke,
-                    };
-                    let Some(stretch) = pair_stretch(contour, &turned, &counts, cut, size_m) else {
-                        continue;
-                    };
-                    if best.is_none_or(|(least, _, _)| stretch < least) {
-                        best = Some((stretch, turn, cut));
-                    }
-                }
-            }
-        }
-    }
-    let (stretch, turn, cut) = best?;
-    let mut turned = corners.to_vec();
-    turned.rotate_left(turn);
-    Some(Plan {
-        misfit: misfit + 0.5 * stretch,
-        corners: turned,
-        cut: Some(cut),
-    })
-}
-
-/// How far edges along the spokes and the line are from `size_m`, or `None` if the counts do not
-/// fit: the mean of `(r - 1/r)² / 4` over the ratios r, near 1 the squared logarithm.
-fn pair_stretch(
-    contour: &Contour,
-    corners: &[usize],
-    counts: &[usize],
-    cut: Cut,
-    size_m: f64,
-) -> Option<f64> {
-    let (triangle, pentagon) = pair_counts(counts, cut);
-    let (three, five) = (loose_spokes(&triangle)?, spokes(&pentagon)?);
-    let n = contour.len();
-    let at = |entry: usize| contour.at[entry % n];
-    let (before, after) = (corners[0] + n - cut.before, corners[0] + cut.after);
-    let (p, q) = (at(before), at(after));
-    let far = [corners[1], corners[2], corners[3]].map(at);
-    let mut sum = 0.0;
-    let mut weigh = |a: Xy, b: Xy, count: usize| {
-        let wished = count as f64 * size_m;
-        let ratio2 = ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)) / (wished * wished);
-        sum += 0.25 * (ratio2 + 1.0 / ratio2 - 2.0);
-    };
-    let near = at(corners[0]);
-    if three[1] == 0 {
-        let bend = bend(near, p, q);
-        weigh(q, bend, three[0]);
-        weigh(bend, p, three[2]);
-    } else {
-        weigh(p, q, cut.across);
-        let centre = centroid(&[near, p, q]);
-        for (side, (a, b)) in [(near, q), (q, p), (p, near)].into_iter().enumerate() {
-            weigh(centre, middle(a, b), three[side]);
-        }
-    }
-    let ring = [q, far[0], far[1], far[2], p];
-    let centre = centroid(&ring);
-    for side in 0..5 {
-        let foot = middle(ring[side], ring[(side + 1) % 5]);
-        weigh(centre, foot, five[side]);
-    }
-    Some(sum / 9.0)
-}
-
-/// Counts of the triangle (from corner 0 on) and of the pentagon (from the line's end past it).
-fn pair_counts(counts: &[usize], cut: Cut) -> ([usize; 3], [usize; 5]) {
-    (
-        [cut.after, cut.across, cut.before],
-        [
-            counts[0] - cut.after,
-            counts[1],
-            counts[2],
-            counts[3] - cut.before,
-            cut.across,
-        ],
-    )
-}
-
-/// Where the line across `near` bends if the triangle is a mere grid: between the fourth corner of
-/// a parallelogram, which the grid would like, and a straight line, which the pentagon would.
-fn bend(near: Xy, p: Xy, q: Xy) -> Xy {
-    std::array::from_fn(|axis| 0.8 * (p[axis] + q[axis]) - 0.6 * near[axis])
-}
-
-fn middle(a: Xy, b: Xy) -> Xy {
-    [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
-}
-
-fn centroid(points: &[Xy]) -> Xy {
-    let n = points.len() as f64;
-    std::array::from_fn(|axis| points.iter().map(|p| p[axis]).sum::<f64>() / n)
-}
-
 /// Lays `plan` and smooths it if that makes its worst quad better.
 fn lay_plan(sheet: &mut Sheet, contour: &Contour, plan: &Plan) -> Shape {
     let mark = sheet.mark();
     let sides = sides(contour, &plan.corners);
     match plan.cut {
-        Some(cut) => lay_pair(sheet, &sides, cut),
+        Some(cut) => pair::lay(sheet, &sides, cut),
         None if sides.len() == 4 => {
             let reversed = |side: &[u32]| side.iter().rev().copied().collect::<Vec<u32>>();
             let (north, west) = (reversed(&sides[2]), reversed(&sides[3]));
@@ -431,65 +285,4 @@ fn sides(contour: &Contour, corners: &[usize]) -> Vec<Vec<u32>> {
             .collect()
     };
     (0..corners.len()).map(side).collect()
-}
-
-/// A star over sides whose counts have spokes.
-fn lay_star(sheet: &mut Sheet, sides: &[Vec<u32>]) {
-    let n = sides.len();
-    let counts: Vec<usize> = sides.iter().map(|side| side.len() - 1).collect();
-    let spokes = spokes(&counts).expect("a plan is made only if the counts fit");
-    // Side i: spoke[i - 1] edges up to its foot, spoke[i + 1] after it.
-    let split = |i: usize| spokes[(i + n - 1) % n];
-    let feet: Vec<Xy> = (0..n)
-        .map(|i| sheet.nodes[sides[i][split(i)] as usize])
-        .collect();
-    let centre = sheet.node(centroid(&feet));
-    let lines: Vec<Vec<u32>> = (0..n)
-        .map(|i| sheet.line(sides[i][split(i)], centre, spokes[i]))
-        .collect();
-    for i in 0..n {
-        let before = (i + n - 1) % n;
-        // The grid at corner i: along side i, up its spoke, and back along that of the side before.
-        let south = &sides[i][..=split(i)];
-        let west: Vec<u32> = sides[before][split(before)..]
-            .iter()
-            .rev()
-            .copied()
-            .collect();
-        sheet.grid(south, &lines[i], &lines[before], &west);
-    }
-}
-
-/// A triangle at corner 0 and the pentagon left. Without a spoke to the line, the triangle is a
-/// grid and its centre, still of valence 3, lies on the line.
-fn lay_pair(sheet: &mut Sheet, sides: &[Vec<u32>], cut: Cut) {
-    let (up, past) = (&sides[3], &sides[0]);
-    let split = up.len() - 1 - cut.before;
-    let (p, q) = (up[split], past[cut.after]);
-    let near = [past[..=cut.after].to_vec(), up[split..].to_vec()];
-    let line = if cut.across == cut.before + cut.after {
-        let [a, b, c] = [past[0], p, q].map(|node| sheet.nodes[node as usize]);
-        let centre = sheet.node(bend(a, b, c));
-        let (east, north) = (
-            sheet.line(q, centre, cut.before),
-            sheet.line(p, centre, cut.after),
-        );
-        let west: Vec<u32> = near[1].iter().rev().copied().collect();
-        sheet.grid(&near[0], &east, &north, &west);
-        let rest = north[..cut.after].iter().rev();
-        east.iter().chain(rest).copied().collect()
-    } else {
-        let line = sheet.line(q, p, cut.across);
-        let [after, before] = near;
-        lay_star(sheet, &[after, line.clone(), before]);
-        line
-    };
-    let five = [
-        past[cut.after..].to_vec(),
-        sides[1].clone(),
-        sides[2].clone(),
-        up[..=split].to_vec(),
-        line.iter().rev().copied().collect(),
-    ];
-    lay_star(sheet, &five);
 }

@@ -14,7 +14,7 @@ use crate::meshing::kernel::Kernel;
 use crate::meshing::kernel::before;
 use crate::meshing::kernel::quad_of;
 use crate::meshing::patterns::counts;
-use crate::meshing::patterns::signed_spokes;
+use crate::meshing::spokes::signed_spokes;
 use crate::meshing::triangulate::NONE;
 
 /// Largest window, quads. Measured on two cities: 80 to 600 give the same mesh.
