@@ -3,7 +3,7 @@
 use crate::cleanup::changes::Dropped;
 use crate::cleanup::changes::Reason;
 use crate::cleanup::changes::Tally;
-use crate::cleanup::graph::Edge;
+use crate::cleanup::edge::Edge;
 use crate::cleanup::graph::Graph;
 use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;

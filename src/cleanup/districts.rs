@@ -41,11 +41,11 @@
 use crate::cleanup::Options;
 use crate::cleanup::changes::Change;
 use crate::cleanup::changes::Dropped;
+use crate::cleanup::edge::Loose;
+use crate::cleanup::edge::as_cut;
 use crate::cleanup::finish::Joined;
 use crate::cleanup::graph::Graph;
-use crate::cleanup::graph::Loose;
 use crate::cleanup::graph::Stand;
-use crate::cleanup::graph::as_cut;
 use crate::cleanup::layout::Band;
 use crate::cleanup::layout::District;
 use crate::cleanup::layout::Grain;

@@ -56,7 +56,7 @@
 //! Steps 1 to 4 run first with half of the tolerance, then with more of it, then with all: what
 //! needs much movement is done only where nothing else helps. `operate` holds the operations,
 //! `attempt` takes back what was tried together and failed, `clear` is the exact test, `stations`
-//! and `measure` keep the books of stretches, `graph` and `index` are the graph.
+//! and `measure` keep the books of stretches, `graph`, `edge`, `index` and `cells` are the graph.
 //!
 //! Large line work is cut into districts that are cleaned on their own (`districts`), all steps in
 //! each; then in the same way the bands between them, and all steps run a last time in the whole
@@ -86,6 +86,7 @@ pub mod check;
 mod clear;
 mod collapse;
 mod districts;
+mod edge;
 mod finish;
 mod graph;
 mod importance;

@@ -3,10 +3,10 @@
 use smallvec::SmallVec;
 
 use crate::cleanup::attempt::Stations;
-use crate::cleanup::graph::Draft;
+use crate::cleanup::edge::Draft;
+use crate::cleanup::edge::Pieces;
+use crate::cleanup::edge::turned;
 use crate::cleanup::graph::Graph;
-use crate::cleanup::graph::Pieces;
-use crate::cleanup::graph::turned;
 use crate::cleanup::measure::distance;
 use crate::geometry::point::Xy;
 use crate::noding::arrangement::Piece;
