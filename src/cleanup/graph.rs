@@ -459,7 +459,7 @@ impl<'a> Graph<'a> {
     }
 }
 
-/// The window around all nodes.
+/// The window around all nodes; the last ones are on its upper border, beyond which cells go on.
 fn around(at: &[Point]) -> Window {
     let (mut min, mut max) = (at.first().copied(), at.first().copied());
     for p in at {

@@ -175,9 +175,10 @@ impl Cleaner {
     /// Tries the operations on one quad, best valences first, until one is kept.
     fn improve(&mut self, quad: u32, pass: Pass) -> bool {
         let fills = matches!(pass, Pass::Rescue(_));
+        let judge = |stage, before: &Shape, now: &Shape| pass.judge(stage, before, now);
         for (_, operation) in candidates(&self.kernel, quad, pass.limit(), fills) {
             if let Some(edit) = edit(&self.kernel, operation)
-                && self.attempt(&edit, |stage, before, now| pass.judge(stage, before, now))
+                && self.attempt(&edit, judge)
             {
                 return true;
             }
@@ -185,7 +186,7 @@ impl Cleaner {
         if fills && self.refills > 0 && self.kernel.quality(quad) < REFILLED {
             self.refills -= 1;
             for edit in refills(&self.kernel, quad) {
-                if self.attempt(&edit, |stage, before, now| pass.judge(stage, before, now)) {
+                if self.attempt(&edit, judge) {
                     return true;
                 }
             }

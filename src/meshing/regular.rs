@@ -54,7 +54,7 @@ struct Filling {
 
 /// Tries the windows of every irregular node; returns how many were filled again.
 pub(crate) fn regularise(cleaner: &mut Cleaner) -> usize {
-    let mut growth = Growth::new();
+    let mut growth = Growth::default();
     // Several seeds lead to the same windows.
     let mut failed: FxHashSet<Vec<u32>> = FxHashSet::default();
     let mut kept = 0;

@@ -63,6 +63,7 @@ pub(crate) fn is_irregular(kernel: &Kernel, node: u32) -> bool {
 }
 
 /// A window while it grows. Kept from one to the next, as its arrays are as long as the mesh.
+#[derive(Default)]
 pub(crate) struct Growth {
     quads: Vec<u32>,
     /// Quad -> is it in the window?
@@ -79,19 +80,6 @@ pub(crate) struct Growth {
 }
 
 impl Growth {
-    /// Nothing yet.
-    pub fn new() -> Growth {
-        Growth {
-            quads: Vec::new(),
-            taken: Vec::new(),
-            count: Vec::new(),
-            nodes: Vec::new(),
-            doubtful: Vec::new(),
-            reached: Vec::new(),
-            from: Vec::new(),
-        }
-    }
-
     /// Ever larger windows around the irregular node `seed`: each holds one more of the irregular
     /// nodes near it.
     pub fn windows(&mut self, kernel: &Kernel, seed: u32) -> Vec<Window> {
@@ -349,7 +337,7 @@ mod tests {
             .filter(|&node| is_irregular(&kernel, node))
             .collect();
         assert_eq!(seeds.len(), 4);
-        let mut growth = Growth::new();
+        let mut growth = Growth::default();
         for &seed in &seeds {
             let windows = growth.windows(&kernel, seed);
             assert!(windows.iter().any(|window| window.irregular == 4));

@@ -290,23 +290,24 @@ impl<'a> Ladder<'a> {
         let Candidate { node, edge, .. } = candidate;
         let rung = [self.web.points[node as usize], to];
         let clear = CLEAR * size;
-        let split = matches!(foot, Foot::Within(_));
         let target = match foot {
             Foot::Node(target) => Some(target),
             Foot::Within(_) => None,
         };
+        let splits = |wall: u32| target.is_none() && wall == edge;
         let ends = || [Some(node), target].into_iter().flatten();
         let is_apart = |others: [u32; 2]| {
             let there = others.map(|it| self.web.points[it as usize]);
-            ends().any(|it| others.contains(&it)) || distance_between(rung, there) >= clear
+            distance_between(rung, there) >= clear
         };
-        let is_touched = |it: u32| (split && it == edge) || ends().any(|end| self.is_at(end, it));
-        let walls = self.walls.near(rung, clear);
-        let mut walls = walls.into_iter().filter(|&it| !is_touched(it));
-        walls.all(|it| is_apart(self.arrangement.edges[it as usize]))
-            && (self.placed.near(rung, clear).into_iter())
-                .all(|it| is_apart(self.laid[it as usize]))
-            && (!split || self.may_be_split(edge))
+        let walls = self.walls.near(rung, clear).into_iter();
+        let mut walls =
+            walls.filter(|&wall| !splits(wall) && !ends().any(|end| self.is_at(end, wall)));
+        let placed = self.placed.near(rung, clear).into_iter();
+        let mut placed = placed.map(|it| self.laid[it as usize]);
+        walls.all(|wall| is_apart(self.arrangement.edges[wall as usize]))
+            && placed.all(|it| ends().any(|end| it.contains(&end)) || is_apart(it))
+            && (target.is_some() || self.may_be_split(edge))
     }
 
     fn may_be_split(&self, edge: u32) -> bool {

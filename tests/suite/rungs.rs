@@ -17,6 +17,7 @@ use polder::rungs;
 use polder::rungs::Options;
 use polder::rungs::lay;
 use proptest::prelude::*;
+use std::collections::BTreeMap;
 
 const OPTIONS: Options = Options {
     longest: 0.8,
@@ -78,6 +79,7 @@ fn lay_well(lines: &[(Role, Vec<At>)]) -> Laid {
     assert_eq!(checked, Ok(()));
     let after = partitioned(&domain, &runged.arrangement);
     check_blocks(&runged.arrangement, &after);
+    check_feet(&arrangement, &runged.arrangement);
     let is_kept = |p: &Point| runged.arrangement.points.binary_search(p).is_ok();
     assert!(arrangement.points.iter().all(is_kept));
     let lengths = [&arrangement, &runged.arrangement].map(|it| covered_m(&domain, it));
@@ -91,6 +93,33 @@ fn lay_well(lines: &[(Role, Vec<At>)]) -> Laid {
         before,
         after,
         arrangement: runged.arrangement,
+    }
+}
+
+/// The last part of promise 1: of the rungs that meet at a foot one has made it, and the others are
+/// no longer than those from foot to foot may be.
+fn check_feet(given: &Arrangement, runged: &Arrangement) {
+    let is_foot = |&node: &u32| {
+        let p = &runged.points[node as usize];
+        given.points.binary_search(p).is_err()
+    };
+    let mut lengths_m: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
+    for (edge, nodes) in runged.edges.iter().enumerate() {
+        if runged.pieces_of(edge as u32).is_empty() {
+            let [a, b] = nodes.map(|node| runged.points[node as usize]);
+            for &foot in nodes.iter().filter(|it| is_foot(it)) {
+                lengths_m
+                    .entry(foot)
+                    .or_default()
+                    .push(a.distance(b) / 1000.0);
+            }
+        }
+    }
+    for (_, lengths_m) in lengths_m {
+        let long = lengths_m
+            .iter()
+            .filter(|&&it| it > rungs::RUN_ON * SIZE_M + 0.01);
+        assert!(long.count() <= 1, "rungs of {lengths_m:?} m at a foot");
     }
 }
 
