@@ -153,8 +153,7 @@ impl<'a> Graph<'a> {
     /// Puts a node to another place, with its edges.
     pub(super) fn place(&mut self, node: u32, to: Point) {
         let from = std::mem::replace(&mut self.at[node as usize], to);
-        self.index.remove_node(node, from);
-        self.index.insert_node(node, to);
+        self.index.move_node(node, from, to);
         for k in 0..self.star[node as usize].len() {
             let edge = self.star[node as usize][k];
             let ends = self.edges[edge as usize].ends;

@@ -95,7 +95,7 @@ struct Gap {
 fn gaps_at(graph: &Graph, node: u32, found: &mut Vec<u32>) -> Vec<Gap> {
     let limit_m = graph.measure.min_edge * graph.size_at_m(node);
     let limit = limit_m / graph.measure.grid().cell_m;
-    (graph.index).edges_near(graph.point(node), limit, found);
+    (graph.index).edges_near(node, graph.point(node), limit, found);
     let gap = |&edge: &u32| {
         let limit_m = limit_m.min(graph.measure.min_edge * graph.edges[edge as usize].size_m);
         let width_m = gap_m(graph, node, edge).filter(|&it| it < limit_m)?;

@@ -56,9 +56,7 @@ impl Nearby {
     pub(super) fn edges(&mut self, graph: &Graph, node: u32) -> &[u32] {
         if self.edges.at[node as usize].is_none() {
             let reach = self.reach * graph.size_at_m(node) / graph.measure.grid().cell_m;
-            (graph.index).edges_near(graph.point(node), reach, &mut self.found);
-            self.found
-                .retain(|&edge| !graph.edges[edge as usize].ends.contains(&node));
+            (graph.index).edges_near(node, graph.point(node), reach, &mut self.found);
             self.edges.put(node, &self.found);
         }
         self.edges.get(node).expect("it was put there")

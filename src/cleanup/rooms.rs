@@ -12,6 +12,7 @@
 use crate::cleanup::Options;
 use crate::cleanup::collapse::leaving;
 use crate::cleanup::graph::Graph;
+use crate::cleanup::index::NO_NODE;
 use crate::cleanup::measure::Measure;
 use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;
@@ -248,7 +249,7 @@ impl<'g, 'm> Faces<'g, 'm> {
     fn clearance_m(&self, p: Xy, reach_m: f64, found: &mut Vec<u32>) -> f64 {
         let cell_m = self.graph.measure.grid().cell_m;
         let at = self.graph.measure.on_grid(p);
-        (self.graph.index).edges_near(at, reach_m / cell_m, found);
+        (self.graph.index).edges_near(NO_NODE, at, reach_m / cell_m, found);
         let away = found.iter().map(|&edge| {
             let (a, b) = self.graph.ends_m(edge);
             to_segment(p, a, b).0

@@ -30,6 +30,16 @@ pub(super) struct Narrow {
     pub(super) share: f64,
 }
 
+impl Narrow {
+    /// How near an edge may be to a node that is not its own.
+    fn of(&self, graph: &Graph, node: u32) -> f64 {
+        match graph.degree(node) {
+            1 => self.end,
+            _ => self.gap,
+        }
+    }
+}
+
 /// Edges within tolerance of several ways around could be bent to and fro without end; this many
 /// steps at one node are enough for all honest work.
 const TRIES_MAX: u8 = 16;
@@ -177,10 +187,8 @@ fn push_beside(graph: &Graph, narrow: &Narrow, edge: u32, queue: &mut Queue) {
 
 /// How narrow the gap between a node and an edge that is not its own is, if it is too narrow.
 fn gap_ratio(graph: &Graph, narrow: &Narrow, node: u32, edge: u32) -> Option<f64> {
-    let is_end = graph.degree(node) == 1;
-    let share = if is_end { narrow.end } else { narrow.gap };
     let size_m = graph.size_at_m(node);
-    let limit = share * size_m.min(graph.edges[edge as usize].size_m);
+    let limit = narrow.of(graph, node) * size_m.min(graph.edges[edge as usize].size_m);
     gap_below_m(graph, node, edge, limit)
         .map(|gap| gap / limit)
         .filter(|&ratio| ratio < 1.0)
@@ -218,13 +226,12 @@ fn each_conflict(graph: &Graph, narrow: &Narrow, node: u32, mut tell: impl FnMut
             });
         }
     }
-    let reach = narrow.gap.max(narrow.end) * graph.size_at_m(node);
+    let reach = narrow.of(graph, node) * graph.size_at_m(node);
     let reach = reach / graph.measure.grid().cell_m;
     graph
         .index
-        .each_edge_near(graph.point(node), reach, |held| {
-            let is_other = !held.ends.contains(&node);
-            if is_other && let Some(ratio) = gap_ratio(graph, narrow, node, held.edge) {
+        .each_edge_near(node, graph.point(node), reach, |held| {
+            if let Some(ratio) = gap_ratio(graph, narrow, node, held.edge) {
                 let with = With::Edge(held.edge);
                 tell(Conflict { ratio, with });
             }
