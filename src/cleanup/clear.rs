@@ -35,8 +35,15 @@ impl Graph<'_> {
     pub(super) fn is_clear(&self, sweeps: &[Sweep], room: &Room) -> bool {
         sweeps.iter().all(|sweep| {
             let [a, b, c] = sweep.triangle;
+            let wide = orient(a, b, c);
+            let (low, high) = (wide.min(0), wide.max(0));
             !self.index.any_at([a, b, c], height(a, b, c), |held| {
                 let [p, q] = held.at();
+                // the triangle lies in the strip along its long side, most edges beside that
+                let (s, t) = (orient(a, b, p), orient(a, b, q));
+                if (s.max(t) < low) | (s.min(t) > high) {
+                    return false;
+                }
                 let is_allowed = room.allows(sweep.triangle, p)
                     && room.allows(sweep.triangle, q)
                     && (room.gone.contains(&held.edge)
@@ -52,8 +59,8 @@ impl Room<'_> {
         if Some(end) == self.mover {
             return true;
         }
-        let is_corner = triangle.contains(&end) && self.vacant != Some(end);
-        is_corner || !in_triangle(end, triangle)
+        // most ends are told by the bounding box
+        !in_triangle(end, triangle) || (triangle.contains(&end) && self.vacant != Some(end))
     }
 }
 
@@ -76,6 +83,9 @@ fn in_triangle(p: Point, [a, b, c]: [Point; 3]) -> bool {
 /// True if the segments `a b` and `c d` have a point in common other than an end of both. Equal
 /// segments do not touch.
 pub(super) fn touches(a: Point, b: Point, c: Point, d: Point) -> bool {
+    if are_apart([a, b], [c, d]) {
+        return false;
+    }
     match (a == c, a == d, b == c, b == d) {
         (true, _, _, true) | (_, true, true, _) => false,
         (true, ..) => overlap(a, b, d),
@@ -91,14 +101,17 @@ fn overlap(hub: Point, u: Point, v: Point) -> bool {
     on_segment(hub, u, v) || on_segment(hub, v, u)
 }
 
-/// True if the closed segments have a common point.
+/// True if the bounding boxes have no point in common.
+#[inline]
+fn are_apart([a, b]: [Point; 2], [c, d]: [Point; 2]) -> bool {
+    (a.x.max(b.x) < c.x.min(d.x))
+        | (a.y.max(b.y) < c.y.min(d.y))
+        | (c.x.max(d.x) < a.x.min(b.x))
+        | (c.y.max(d.y) < a.y.min(b.y))
+}
+
+/// True if the closed segments, whose boxes meet, have a common point.
 fn meet(a: Point, b: Point, c: Point, d: Point) -> bool {
-    let apart = |p: Point, q: Point, r: Point, s: Point| {
-        p.x.max(q.x) < r.x.min(s.x) || p.y.max(q.y) < r.y.min(s.y)
-    };
-    if apart(a, b, c, d) || apart(c, d, a, b) {
-        return false;
-    }
     // on one line, overlapping boxes are overlapping segments
     let sides = |p: Point, q: Point, r: Point, s: Point| {
         orient(p, q, r).signum() * orient(p, q, s).signum()

@@ -73,30 +73,30 @@ pub(super) fn collapse_thin(graph: &mut Graph, thin: &Thin, nodes: &[u32]) {
 fn thin_faces(graph: &Graph, thin: &Thin, nodes: &[u32]) -> Vec<Face> {
     let mut seen = vec![[false; 2]; graph.edges.len()];
     let mut faces = Vec::new();
+    let mut way = Vec::with_capacity(WALK_MAX);
     for &node in nodes {
         for &edge in &graph.star[node as usize] {
             let side = usize::from(graph.edges[edge as usize].ends[0] != node);
             if !seen[edge as usize][side] {
-                faces.extend(walk(graph, &mut seen, edge, side, thin));
+                faces.extend(walk(graph, &mut seen, (edge, side), thin, &mut way));
             }
         }
     }
     faces
 }
 
-/// The face on the left of `edge`, from end `side` on, if it is thin.
+/// The face on the left of an edge, from one of its ends on, if it is thin. `walk`: scratch.
 fn walk(
     graph: &Graph,
     seen: &mut [[bool; 2]],
-    edge: u32,
-    side: usize,
+    start: (u32, usize),
     thin: &Thin,
+    walk: &mut Vec<(u32, u32)>,
 ) -> Option<Face> {
-    let start = (edge, side);
     let (mut edge, mut side) = start;
     // exact: the walk around a free line has no area, and is no face
-    let (mut walk, mut area_cells2, mut length, mut size) =
-        (Vec::new(), 0_i128, 0.0, f64::INFINITY);
+    let (mut area_cells2, mut length, mut size) = (0_i128, 0.0, f64::INFINITY);
+    walk.clear();
     if !graph.edges[edge as usize].inside[side] {
         return None;
     }
@@ -123,11 +123,11 @@ fn walk(
     }
     let cell_m = graph.measure.grid().cell_m;
     let width = area_cells2 as f64 * cell_m * cell_m / length / size;
-    let is_triangle = width < thin.triangle && walk.len() <= SIX && corners(graph, &walk) == 3;
+    let is_triangle = width < thin.triangle && walk.len() <= SIX && corners(graph, walk) == 3;
     (is_triangle || width < thin.width).then_some(Face {
         width,
         is_triangle,
-        walk,
+        walk: walk.clone(),
     })
 }
 

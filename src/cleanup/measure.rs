@@ -46,6 +46,9 @@ struct Vertex {
     at: Xy,
 }
 
+/// Distances to one place, found in two ways, differ by less than this, metres.
+pub(super) const ROUNDING_M: f64 = 1e-6;
+
 /// Added to the rank of rings.
 pub(super) const RIM_RANK: f64 = 1e13;
 /// Added to the rank of held lines.
@@ -234,23 +237,23 @@ impl<'a> Measure<'a> {
             .map(|it| it.at)
     }
 
-    /// The station between `low_m` and `high_m` whose point is nearest to `p`.
-    pub(super) fn nearest(&self, line: LineId, low_m: f64, high_m: f64, p: Xy) -> f64 {
+    /// The station between `low_m` and `high_m` whose point is nearest to `p`, and how far it is.
+    pub(super) fn nearest(&self, line: LineId, low_m: f64, high_m: f64, p: Xy) -> (f64, f64) {
         let vertices = self.vertices_of(line);
         let first = vertices.partition_point(|it| it.station_m <= low_m);
         let mut k = first.clamp(1, vertices.len() - 1) - 1;
-        let mut best = (f64::INFINITY, low_m);
+        let mut best = (low_m, f64::INFINITY);
         while k + 1 < vertices.len() && vertices[k].station_m < high_m {
             let (one, next) = (vertices[k], vertices[k + 1]);
             let (from, to) = (one.station_m.max(low_m), next.station_m.min(high_m));
             let (a, b) = (between(one, next, from), between(one, next, to));
             let (away, t) = to_segment(p, a, b);
-            if away < best.0 {
-                best = (away, from + t * (to - from));
+            if away < best.1 {
+                best = (from + t * (to - from), away);
             }
             k += 1;
         }
-        best.1
+        best
     }
 
     /// The grid point nearest to `p`.

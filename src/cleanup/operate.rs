@@ -68,8 +68,9 @@ impl Graph<'_> {
     /// would be too far away.
     pub(super) fn would_fit(&self, v: u32, p: Point, share: f64) -> bool {
         let mut drafts = self.drafts(v);
-        self.restation(&mut drafts, self.measure.metres(p));
-        self.is_free(v) && self.all_fit(&drafts, p, share)
+        self.is_free(v)
+            && self.restation(&mut drafts, self.measure.metres(p), share)
+            && self.all_fit(&drafts, p, share)
     }
 
     /// Moves node `v` onto node `w`: an edge between them is contracted, edges to the same
@@ -89,7 +90,9 @@ impl Graph<'_> {
         let absorbed = contracted.map_or_else(Absorbed::default, |edge| {
             self.absorb(edge, v, w, &mut drafts)
         });
-        self.restation(&mut drafts, self.measure.metres(p));
+        if !self.restation(&mut drafts, self.measure.metres(p), share) {
+            return false;
+        }
         let ends: SmallVec<[u32; 6]> = drafts.iter().map(|draft| draft.to).collect();
         if !self.all_fit(&drafts, p, share)
             || !self.absorbed_fits(&absorbed, share)

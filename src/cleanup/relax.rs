@@ -3,12 +3,14 @@
 
 use crate::cleanup::graph::Graph;
 use crate::cleanup::importance::is_rim_corner;
+use crate::cleanup::measure::ROUNDING_M;
 use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;
 use crate::cleanup::nearby::Nearby;
 use crate::cleanup::separate::gap_below_m;
 use crate::cleanup::separate::is_beside;
 use crate::cleanup::steps::Step;
+use crate::geometry::point::Point;
 use crate::geometry::point::Xy;
 
 /// What is wanted, in shares of the local mesh size.
@@ -49,6 +51,8 @@ pub(super) fn relax(graph: &mut Graph, wanted: &Wanted, nodes: &[u32]) {
     let mut first_share = vec![0_u8; graph.at.len()];
     // the first round in which a node is not yet known to be looked at
     let mut asked = vec![0; graph.at.len()];
+    // where a node was last found near all its lines: as long as it is there, it still is
+    let mut is_home: Vec<Option<Point>> = vec![None; graph.at.len()];
     let mut around = Vec::new();
     let mut nearby = Nearby::new(graph, wanted.gap + DRIFT);
     for round in 0..wanted.rounds {
@@ -60,9 +64,14 @@ pub(super) fn relax(graph: &mut Graph, wanted: &Wanted, nodes: &[u32]) {
             if !is_part[node as usize] || stays(graph, wanted, node) {
                 continue;
             }
-            let push = push_m(graph, wanted, node, &mut nearby, &mut around);
-            let home = homeward_m(graph, node);
-            let push = [push[0] + home[0], push[1] + home[1]];
+            let mut push = push_m(graph, wanted, node, &mut nearby, &mut around);
+            let at = graph.point(node);
+            if is_home[node as usize] != Some(at) {
+                match homeward_m(graph, node) {
+                    Some(home) => push = [push[0] + home[0], push[1] + home[1]],
+                    None => is_home[node as usize] = Some(at),
+                }
+            }
             let push = along_rim(graph, node, push);
             let size = graph.size_at_m(node);
             if distance(push, [0.0; 2]) <= STILL * size {
@@ -88,12 +97,12 @@ pub(super) fn relax(graph: &mut Graph, wanted: &Wanted, nodes: &[u32]) {
 /// Nodes farther than this from one of their lines are pulled back to it, in mesh sizes.
 const FAR: f64 = 0.2;
 
-/// Where the line that is farthest away pulls a node, metres.
-fn homeward_m(graph: &Graph, node: u32) -> Xy {
+/// Where the line that is farthest away pulls a node, metres; none if all are near.
+fn homeward_m(graph: &Graph, node: u32) -> Option<Xy> {
     let at = graph.metres(node);
     let far = FAR * graph.size_at_m(node);
     let (mut away, mut way) = (far, [0.0; 2]);
-    let (mut last, mut end_m) = (None, 0.0);
+    let (mut last, mut end_m, mut is_near) = (None, 0.0, true);
     for &edge in &graph.star[node as usize] {
         let it = &graph.edges[edge as usize];
         for piece in &it.pieces {
@@ -109,7 +118,12 @@ fn homeward_m(graph: &Graph, node: u32) -> Xy {
             if end_m <= away {
                 continue;
             }
-            let station = (graph.measure).nearest(piece.line, here.min(there), here.max(there), at);
+            is_near = false;
+            let (low, high) = (here.min(there), here.max(there));
+            let (station, away_m) = (graph.measure).nearest(piece.line, low, high, at);
+            if away_m + ROUNDING_M <= away {
+                continue;
+            }
             let place = graph.measure.point(piece.line, station);
             if distance(at, place) > away {
                 away = distance(at, place);
@@ -117,7 +131,7 @@ fn homeward_m(graph: &Graph, node: u32) -> Xy {
             }
         }
     }
-    way.map(|it| it * (1.0 - far / away))
+    (!is_near).then(|| way.map(|it| it * (1.0 - far / away)))
 }
 
 /// Corners of the outline stay, but at the ends of its short edges.

@@ -82,16 +82,22 @@ fn scatter(p: Point) -> u32 {
 /// How far its lines would be from the edge without `node`, in mesh sizes; `None` if it must stay.
 fn deviation(graph: &Graph, smooth: &Smooth, node: u32) -> Option<f64> {
     let star = &graph.star[node as usize];
-    if star.len() != 2 || (!smooth.over_ends && !graph.all_pass(node)) {
+    let &[e, f] = star.as_slice() else {
         return None;
-    }
-    let (a, b, pieces) = graph.passing(node)?;
-    if a == b || graph.find(a, b).is_some() {
-        return None;
-    }
+    };
+    let [a, b] = [e, f].map(|edge| graph.edges[edge as usize].other(node));
     let size = graph.size_at_m(node);
     let (p, q) = (graph.metres(a), graph.metres(b));
     let own = to_segment(graph.metres(node), p, q).0;
+    // most nodes are told by this, and need no look at their lines
+    let most = (smooth.deviation).max(smooth.at_corners).max(smooth.on_rim);
+    if own > size * most || a == b || graph.find(a, b).is_some() {
+        return None;
+    }
+    if !smooth.over_ends && !graph.all_pass(node) {
+        return None;
+    }
+    let (_, _, pieces) = graph.passing(node)?;
     let turns = turns(graph, node);
     if turns && star.iter().all(|&edge| is_long(graph, edge)) {
         return None;

@@ -7,6 +7,7 @@ use crate::cleanup::edge::Draft;
 use crate::cleanup::edge::Pieces;
 use crate::cleanup::edge::turned;
 use crate::cleanup::graph::Graph;
+use crate::cleanup::measure::ROUNDING_M;
 use crate::cleanup::measure::distance;
 use crate::geometry::point::Xy;
 use crate::noding::arrangement::Piece;
@@ -30,7 +31,7 @@ impl Graph<'_> {
         let mut halves = (Pieces::new(), Pieces::new());
         for piece in &self.edges[edge as usize].pieces {
             let (low, high) = (piece.from_m.min(piece.to_m), piece.from_m.max(piece.to_m));
-            let station = self.measure.nearest(piece.line, low, high, p);
+            let station = self.measure.nearest(piece.line, low, high, p).0;
             let station = kept_inside(station, low, high);
             let line = piece.line;
             halves.0.push(Piece {
@@ -130,20 +131,26 @@ impl Graph<'_> {
         best.is_some()
     }
 
-    /// Lines that pass the moving node get there at the station nearest to its new place `p`.
-    pub(super) fn restation(&self, drafts: &mut [Draft], p: Xy) {
+    /// Lines that pass the moving node get there at the station nearest to its new place `p`. False,
+    /// with the drafts half done, if one of them surely stays too far away from there.
+    pub(super) fn restation(&self, drafts: &mut [Draft], p: Xy, share: f64) -> bool {
         for i in 0..drafts.len() {
             for j in i + 1..drafts.len() {
                 let (head, tail) = drafts.split_at_mut(j);
                 for one in &mut head[i].pieces {
                     let next = tail[0].pieces.iter_mut().find(|it| continues(it, one));
                     if let Some(other) = next {
-                        one.from_m = self.passing_m(one, other, p);
-                        other.from_m = one.from_m;
+                        let (station_m, least_m) = self.passing_m(one, other, p);
+                        let limit_m = share * self.measure.tolerance_m[one.line as usize];
+                        if least_m > limit_m + ROUNDING_M {
+                            return false;
+                        }
+                        (one.from_m, other.from_m) = (station_m, station_m);
                     }
                 }
             }
         }
+        true
     }
 
     /// The same for the edges of node `v` themselves. Returns the stations as they were.
@@ -159,7 +166,7 @@ impl Graph<'_> {
                     all.find(|(.., it)| continues(it, &one))
                 });
                 if let Some((f, l, other)) = next {
-                    let station_m = self.passing_m(&one, &other, p);
+                    let station_m = self.passing_m(&one, &other, p).0;
                     for (edge, piece) in [(e, k), (f, l)] {
                         let is_end = self.edges[edge as usize].ends[1] == v;
                         was.push((edge, piece as u32, is_end, one.from_m));
@@ -193,13 +200,18 @@ impl Graph<'_> {
         }
     }
 
-    /// Where a line passes a node at `p`; its two pieces are away from there.
-    fn passing_m(&self, one: &Piece, other: &Piece, p: Xy) -> f64 {
+    /// Where a line passes a node at `p`, and what it is away from there at least; its two pieces
+    /// are away from there.
+    fn passing_m(&self, one: &Piece, other: &Piece, p: Xy) -> (f64, f64) {
         let (low, high) = (one.to_m.min(other.to_m), one.to_m.max(other.to_m));
         let line = one.line;
         let away = 3.0 * distance(self.measure.point(line, one.from_m), p);
         let (from, to) = ((one.from_m - away).max(low), (one.from_m + away).min(high));
-        kept_inside(self.measure.nearest(line, from, to, p), low, high)
+        let (station_m, away_m) = self.measure.nearest(line, from, to, p);
+        let kept_m = kept_inside(station_m, low, high);
+        // the nearest place of a part: elsewhere the line may be nearer
+        let is_known = kept_m == station_m && from < to;
+        (kept_m, if is_known { away_m } else { 0.0 })
     }
 
     /// The neighbours `a`, `b` of a node of degree two and the pieces from `a` to `b`: lines that
