@@ -5,6 +5,7 @@ use crate::cleanup::changes::Reason;
 use crate::cleanup::changes::Tally;
 use crate::cleanup::edge::Edge;
 use crate::cleanup::graph::Graph;
+use crate::cleanup::measure::Measure;
 use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;
 use crate::domain::line::LineId;
@@ -22,7 +23,7 @@ const ROUNDING_M: f64 = 1e-6;
 /// What came in and is not in the result, with the reason. `given`: the [`stretches`] of the input.
 pub(super) fn missing(graph: &Graph, given: &[Stretch]) -> Vec<Dropped> {
     let live = graph.edges.iter().filter(|edge| edge.alive);
-    let there = stretches(graph, live.flat_map(|edge| &edge.pieces));
+    let there = stretches(graph.measure, live.flat_map(|edge| &edge.pieces));
     let carriers = carriers(graph);
     let mut known: Vec<&Dropped> = graph.dropped.iter().collect();
     known.sort_by_key(|it| it.line);
@@ -39,14 +40,14 @@ pub(super) fn missing(graph: &Graph, given: &[Stretch]) -> Vec<Dropped> {
 
 /// The union of the pieces, sorted; of constraint lines only.
 pub(super) fn stretches<'p>(
-    graph: &Graph,
+    measure: &Measure,
     pieces: impl Iterator<Item = &'p Piece>,
 ) -> Vec<Stretch> {
     let all: Vec<Stretch> = pieces
-        .filter(|piece| !graph.measure.is_rim(piece.line))
+        .filter(|piece| !measure.is_rim(piece.line))
         .map(|it| (it.line, it.from_m.min(it.to_m), it.from_m.max(it.to_m)))
         .collect();
-    let lines = graph.measure.domain.lines.len();
+    let lines = measure.domain.lines.len();
     let order = grouped(&all, lines, |it| it.0 as usize);
     let mut here: Vec<Stretch> = Vec::new();
     let mut union: Vec<Stretch> = Vec::new();

@@ -141,8 +141,8 @@ fn check_coverage(
     input: &Arrangement,
     cleaned: &Cleaned,
 ) -> Result<(), Defect> {
-    let wanted = stretches(graph, input.pieces.iter());
-    let there = stretches(graph, cleaned.arrangement.pieces.iter());
+    let wanted = stretches(graph.measure, input.pieces.iter());
+    let there = stretches(graph.measure, cleaned.arrangement.pieces.iter());
     let dropped = cleaned.dropped.iter();
     let mut dropped: Vec<Stretch> = dropped.map(|it| (it.line, it.from_m, it.to_m)).collect();
     dropped.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));

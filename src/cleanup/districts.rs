@@ -43,6 +43,7 @@ use crate::cleanup::changes::Change;
 use crate::cleanup::changes::Dropped;
 use crate::cleanup::edge::Loose;
 use crate::cleanup::edge::as_cut;
+use crate::cleanup::finish::Given;
 use crate::cleanup::finish::Joined;
 use crate::cleanup::graph::Graph;
 use crate::cleanup::graph::Stand;
@@ -76,6 +77,11 @@ impl Site<'_> {
     /// What to clean first; none if there is too little work to share.
     pub fn districts(&self) -> &[District] {
         &self.layout.districts
+    }
+
+    /// What the end of clean-up asks of the input; it needs no graph.
+    pub fn given(&self) -> Given {
+        Given::of(&self.measure, &self.arrangement)
     }
 
     /// What to clean when all districts are clean.

@@ -1,14 +1,16 @@
-//! Measures the graph against the input, and makes the arrangement of it: two halves that need
-//! nothing of each other.
+//! Measures the graph against the input, and makes the arrangement of it: parts that need nothing of
+//! each other.
 
 use crate::cleanup::Cleaned;
 use crate::cleanup::SHARP_DEG;
 use crate::cleanup::audit;
+use crate::cleanup::audit::Stretch;
 use crate::cleanup::changes::Dropped;
 use crate::cleanup::changes::Reason;
 use crate::cleanup::changes::Tally;
 use crate::cleanup::graph::Graph;
 use crate::cleanup::leftovers;
+use crate::cleanup::measure::Measure;
 use crate::cleanup::sharp;
 use crate::cleanup::thread;
 use crate::domain::finding::Finding;
@@ -23,13 +25,18 @@ pub struct Joined<'a> {
     pub(super) is_on: bool,
 }
 
-/// How far lines moved, and what is left.
-pub struct Measured {
-    /// Displacements and rows; the lengths are the other half's.
-    tally: Tally,
-    sharp_before: u64,
-    findings: Vec<Finding>,
+/// What the input alone tells: known before the graph is.
+pub struct Given {
+    /// Union of the pieces, by line.
+    stretches: Vec<Stretch>,
+    sharp: u64,
 }
+
+/// How far lines moved: displacements and rows.
+pub struct Moved(Tally);
+
+/// What is still too short, too narrow or too sharp.
+pub struct Left(Vec<Finding>);
 
 /// The arrangement, and what is not in it.
 pub struct Threaded {
@@ -40,35 +47,46 @@ pub struct Threaded {
     sharp_after: u64,
 }
 
-/// One half after the other.
+/// One part after the other.
 pub fn finish(joined: Joined) -> Cleaned {
-    let (measured, threaded) = (joined.measured(), joined.threaded());
-    joined.cleaned(measured, threaded)
+    let given = Given::of(joined.graph.measure, joined.input);
+    let (moved, left) = (joined.moved(), joined.left());
+    let threaded = joined.threaded(&given);
+    joined.cleaned(&given, moved, left, threaded)
+}
+
+impl Given {
+    pub(super) fn of(measure: &Measure, input: &Arrangement) -> Given {
+        Given {
+            stretches: audit::stretches(measure, input.pieces.iter()),
+            sharp: sharp::sharp_angles(input, SHARP_DEG),
+        }
+    }
 }
 
 impl Joined<'_> {
-    /// One half: figures and findings.
-    pub fn measured(&self) -> Measured {
-        Measured {
-            tally: Tally {
-                rows: audit::rows(&self.graph),
-                ..audit::displacements(&self.graph)
-            },
-            sharp_before: sharp::sharp_angles(self.input, SHARP_DEG),
-            findings: leftovers::leftovers(&self.graph),
-        }
+    /// The figures.
+    pub fn moved(&self) -> Moved {
+        Moved(Tally {
+            rows: audit::rows(&self.graph),
+            ..audit::displacements(&self.graph)
+        })
     }
 
-    /// The other half: what was lost, and the arrangement of the rest.
-    pub fn threaded(&self) -> Threaded {
-        let graph = &self.graph;
-        let given = audit::stretches(graph, self.input.pieces.iter());
-        let mut dropped = audit::missing(graph, &given);
+    /// The findings.
+    pub fn left(&self) -> Left {
+        Left(leftovers::leftovers(&self.graph))
+    }
+
+    /// What was lost, and the arrangement of the rest.
+    pub fn threaded(&self, given: &Given) -> Threaded {
+        let (graph, given) = (&self.graph, &given.stretches);
+        let mut dropped = audit::missing(graph, given);
         let (arrangement, torn) = match self.is_on {
             true => {
                 dropped.sort_by_key(|it| it.line);
                 let (domain, limits_m) = (graph.measure.domain, &graph.measure.tolerance_m);
-                thread::thread(domain, graph.arrangement(), &given, &dropped, limits_m)
+                thread::thread(domain, graph.arrangement(), given, &dropped, limits_m)
             }
             false => {
                 // stretches of less than a cell, there and back, that the graph does not keep
@@ -89,8 +107,8 @@ impl Joined<'_> {
         }
     }
 
-    /// Both halves together.
-    pub fn cleaned(self, measured: Measured, threaded: Threaded) -> Cleaned {
+    /// All parts together.
+    pub fn cleaned(self, given: &Given, moved: Moved, left: Left, threaded: Threaded) -> Cleaned {
         Cleaned {
             arrangement: threaded.arrangement,
             dropped: threaded.dropped,
@@ -98,10 +116,10 @@ impl Joined<'_> {
             tally: Tally {
                 length_m: threaded.length_m,
                 length_dropped_m: threaded.length_dropped_m,
-                sharp_angles: [measured.sharp_before, threaded.sharp_after],
-                ..measured.tally
+                sharp_angles: [given.sharp, threaded.sharp_after],
+                ..moved.0
             },
-            findings: measured.findings,
+            findings: left.0,
         }
     }
 }

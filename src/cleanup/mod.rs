@@ -49,8 +49,8 @@
 //! 6. `tips`: tips that are still acute get an edge across, and with it a fourth corner. Triangles
 //!    that are still small are closed.
 //! 7. `audit`: everything is measured against the input again; `thread`: the edges of each line are
-//!    made one way from end to end; `leftovers`: what could not be had is named. Two halves that can
-//!    be done at once (`finish`). [`rooms`] looks afterwards whether a sub-domain with room for
+//!    made one way from end to end; `leftovers`: what could not be had is named. Parts that can be
+//!    done at once (`finish`); what the input alone tells, while bands are joined. [`rooms`] looks afterwards whether a sub-domain with room for
 //!    elements was lost; that is measured, not promised.
 //!
 //! Steps 1 to 4 run first with half of the tolerance, then with more of it, then with all: what
@@ -70,8 +70,8 @@
 //! Near-linear: each operation looks at a few cells of a grid (`cells`, `index`); later rounds look
 //! only at what was changed. An attempt that failed changes nothing, and within a pass `separate`
 //! tries it again only where an edge changed since. Relaxation asks once in three rounds what is near
-//! (`nearby`); it is 38 % of all, separation 39 %. Cores share districts and bands, and two of them
-//! the end; what one core does alone is a tenth of the time that two need for all. Memory: some 300
+//! (`nearby`); it is 38 % of all, separation 35 %. Cores share districts and bands, and two or three of
+//! them the end; what one core does alone is a tenth of the time that two need for all. Memory: some 300
 //! bytes an edge.
 //!
 //! # Not here
@@ -134,6 +134,7 @@ pub use crate::cleanup::districts::clean_district;
 pub use crate::cleanup::districts::join;
 pub use crate::cleanup::districts::meet;
 pub use crate::cleanup::districts::site;
+pub use crate::cleanup::finish::Given;
 pub use crate::cleanup::finish::Joined;
 pub use crate::cleanup::finish::finish;
 pub use crate::cleanup::layout::Band;

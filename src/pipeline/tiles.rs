@@ -71,9 +71,12 @@ pub(super) fn clean(
     let bands = (site.bands().par_iter())
         .map(|it| counted(cleanup::clean_band(&site, &met, it)))
         .collect();
-    let joined = cleanup::join(&site, met, bands);
-    let (measured, threaded) = rayon::join(|| joined.measured(), || joined.threaded());
-    joined.cleaned(measured, threaded)
+    let (joined, given) = rayon::join(|| cleanup::join(&site, met, bands), || site.given());
+    let (threaded, (moved, left)) = rayon::join(
+        || joined.threaded(&given),
+        || rayon::join(|| joined.moved(), || joined.left()),
+    );
+    joined.cleaned(&given, moved, left, threaded)
 }
 
 /// Walks all tiles in parallel and joins the walks into sub-domains.
