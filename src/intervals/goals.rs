@@ -115,6 +115,17 @@ impl Goals {
         free.clamp(lower, upper)
     }
 
+    /// How much dearer a misfit of this block is than one between full-size edges: where one interval
+    /// more makes a tiny edge, a turn of it through the block makes tiny quads. The square root of the
+    /// geometric mean of its curves' weights. (Measured on eight cities, beside no weight: the 1 % quantile of
+    /// shapes grows by up to .005, irregular nodes fall by up to .5 points, tiny cells stay as they are.
+    /// The mean itself does twice that, but makes up to 2 % more quads, and tinier ones.)
+    pub fn block_weight(&self, block: &Block) -> f64 {
+        let curves = || block.sides.iter().flatten();
+        let logs = curves().map(|&curve| self.weight[curve as usize].ln());
+        (0.5 * logs.sum::<f64>() / curves().count().max(1) as f64).exp()
+    }
+
     /// The cost without its weight.
     pub fn deviation(&self, curve: usize, n: u32) -> f64 {
         let goal = self.goal[curve].max(f64::from(self.lower[curve]));

@@ -77,7 +77,7 @@ pub struct Structure {
     pub mapped_before: u32,
     /// How many of them can be mapped.
     pub mapped: u32,
-    /// Price of a pattern's excess of one.
+    /// Price of a pattern's excess of one between full-size edges.
     pub worth: f64,
     /// Price of all excess that is left.
     pub price: f64,
@@ -98,8 +98,9 @@ pub struct Structure {
 impl Structure {
     /// Counts again what other counts do to the patterns.
     pub(crate) fn appraise(&mut self, partition: &Partition, goals: &Goals, counts: &[u32]) {
-        let (rules, places) = (Rules::of(goals), Places::of(partition, goals));
-        let draft = Draft::new(goals, &rules, &places, units(self.worth), counts.to_vec());
+        let worth = units(self.worth);
+        let (rules, places) = (Rules::of(goals, worth), Places::of(partition, goals));
+        let draft = Draft::new(goals, &rules, &places, counts.to_vec());
         self.mapped = draft.mapped();
         self.price = draft.price() as f64 * COST_UNIT;
     }

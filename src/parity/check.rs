@@ -89,8 +89,8 @@ pub fn recount(
     made: &Structure,
 ) -> Result<Recount, String> {
     let worth = units(made.worth);
-    let (rules, places) = (Rules::of(goals), Places::of(partition, goals));
-    let draft = Draft::new(goals, &rules, &places, worth, counts.to_vec());
+    let (rules, places) = (Rules::of(goals, worth), Places::of(partition, goals));
+    let draft = Draft::new(goals, &rules, &places, counts.to_vec());
     Ok(Recount {
         mapped: draft.mapped(),
         price: draft.price(),
@@ -101,8 +101,8 @@ pub fn recount(
 
 /// Which blocks `counts` let a pattern mesh.
 pub fn fits(partition: &Partition, goals: &Goals, counts: &[u32]) -> Vec<bool> {
-    let (rules, places) = (Rules::of(goals), Places::of(partition, goals));
-    let draft = Draft::new(goals, &rules, &places, 0, counts.to_vec());
+    let (rules, places) = (Rules::of(goals, 0), Places::of(partition, goals));
+    let draft = Draft::new(goals, &rules, &places, counts.to_vec());
     let blocks = 0..goals.blocks.len();
     blocks.map(|block| draft.excess(block) == 0).collect()
 }

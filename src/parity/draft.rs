@@ -47,8 +47,9 @@ pub struct Draft<'a> {
     goals: &'a Goals,
     rules: &'a Rules,
     places: &'a Places,
-    worth: i64,
     totals: Vec<[i64; 6]>,
+    /// The price of the dearest block, units.
+    worth_most: i64,
     /// What a move must gain for each curve that it changes; 0 unless counts should stay.
     pub hurdle: i64,
     /// The counts.
@@ -61,7 +62,6 @@ impl<'a> Draft<'a> {
         goals: &'a Goals,
         rules: &'a Rules,
         places: &'a Places,
-        worth: i64,
         counts: Vec<u32>,
     ) -> Draft<'a> {
         let of_side = |side: &Vec<u32>| -> i64 {
@@ -75,8 +75,8 @@ impl<'a> Draft<'a> {
             goals,
             rules,
             places,
-            worth,
             totals,
+            worth_most: rules.worth.iter().copied().max().unwrap_or(0),
             hurdle: 0,
             counts,
         }
@@ -84,7 +84,7 @@ impl<'a> Draft<'a> {
 
     /// The state of other counts.
     pub fn with_counts(&self, counts: Vec<u32>) -> Draft<'a> {
-        Draft::new(self.goals, self.rules, self.places, self.worth, counts)
+        Draft::new(self.goals, self.rules, self.places, counts)
     }
 
     /// What the counts of each side of `block` are in all.
@@ -107,7 +107,9 @@ impl<'a> Draft<'a> {
     /// Price of all blocks that cannot be mapped, units.
     pub fn price(&self) -> i64 {
         let blocks = 0..self.totals.len();
-        self.worth * blocks.map(|block| self.excess(block)).sum::<i64>()
+        blocks
+            .map(|block| self.rules.worth[block] * self.excess(block))
+            .sum()
     }
 
     /// What the counts cost, with the price of blocks, units.
@@ -172,7 +174,7 @@ impl<'a> Draft<'a> {
                 (best, best_len) = (total, row.len());
             }
             // No block at its end can win back more than what the change takes off its excess.
-            if total - best > by.abs() * self.worth {
+            if total - best > by.abs() * self.worth_most {
                 break;
             }
             let Some((next, block)) = self.across(curve, from, by, &row) else {
@@ -217,7 +219,8 @@ impl<'a> Draft<'a> {
             let mut after = self.totals[block as usize];
             after[usize::from(side)] += by;
             let block = block as usize;
-            change += self.worth * (self.excess_with(block, &after) - self.excess(block));
+            change +=
+                self.rules.worth[block] * (self.excess_with(block, &after) - self.excess(block));
         }
         Some(change)
     }

@@ -40,8 +40,8 @@ pub fn keep(
         .map(|(id, (old, &best))| old.filter(|&n| within(id, n)).unwrap_or(best))
         .collect();
     change(partition, goals, worth == 0, best, &mut kept);
-    let (rules, places) = (Rules::of(goals), Places::of(partition, goals));
-    let mut draft = Draft::new(goals, &rules, &places, worth, kept);
+    let (rules, places) = (Rules::of(goals, worth), Places::of(partition, goals));
+    let mut draft = Draft::new(goals, &rules, &places, kept);
     draft.hurdle = WORTH_A_CHANGE;
     draft.descend(MEND_ROUNDS);
     for island in islands(partition, &draft.counts, best) {

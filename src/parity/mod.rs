@@ -58,17 +58,18 @@
 //! A *block* is a sub-domain with three to six sides, each of one curve or several. One pattern can
 //! mesh it (a grid, or a star with one irregular node) if the totals N of its sides satisfy rules
 //! `a_r N + b_r <= 0` ([`rules`](crate::intervals::goals::rules)), and, with four or six sides, if
-//! every other side has an even total. With a price `p` (`Options::worth`) for each unit of the
-//! largest excess, the programme becomes
+//! every other side has an even total. With a price `p` for each unit of the largest excess
+//! (`Options::worth`, in tiny blocks [more](crate::intervals::goals::Goals::block_weight)), the programme
+//! becomes
 //!
 //! ```text
-//! minimise  sum of cost_c(n_c) + p sum over blocks f of
-//!                       max(0, a_r N_f + b_r over rules r of f, [every other side of f odd])
+//! minimise  sum of cost_c(n_c) + sum over blocks f of
+//!                 p_f x max(0, a_r N_f + b_r over rules r of f, [every other side of f odd])
 //! ```
 //!
 //! which is no T-join any more, but nearly:
-//! - `tilts`, exact: for any multipliers u_r >= 0 that sum to at most p in each block, the price of
-//!   f is at least `sum u_r (a_r N_f + b_r) + (p - sum u_r) [odd]`. The first part only tilts
+//! - `tilts`, exact: for any multipliers u_r >= 0 that sum to at most p_f in each block, the price of
+//!   f is at least `sum u_r (a_r N_f + b_r) + (p_f - sum u_r) [odd]`. The first part only tilts
 //!   the costs of curves, which stay convex; the second is an edge between the two halves that f is
 //!   split into. So a T-join on the split graph bounds cost *and* price of all counts, and
 //!   certifies it in whole numbers: multipliers and cuts are stored, `check` recomputes the bound.
@@ -160,8 +161,8 @@ pub struct Options {
     pub nodes_max: i32,
     /// Rows of a part up to which HiGHS is asked; above, its certified matching stands alone.
     pub rows_max: u32,
-    /// Price of a pattern's excess of one, in the unit of costs, the relative deviation of one
-    /// curve. 0: parity alone.
+    /// Price of a pattern's excess of one between full-size edges, in the unit of costs, the relative
+    /// deviation of one curve. 0: parity alone.
     pub worth: f64,
     /// Rounds of moves for the sake of patterns; most pay in the first three.
     pub rounds_max: u32,

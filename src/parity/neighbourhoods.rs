@@ -6,7 +6,6 @@ use crate::parity::Options;
 use crate::parity::around::Around;
 use crate::parity::draft::Draft;
 use crate::parity::programme::cost_units;
-use crate::parity::programme::units;
 use crate::parity::solver_rules;
 use crate::parity::solver_rules::Neighbourhood;
 use crate::parity::tilts::Rules;
@@ -30,12 +29,11 @@ pub fn improve(
     multipliers: &[i64],
     options: &Options,
 ) -> u32 {
-    let worth = units(options.worth);
     let crosses = |id: usize| partition.curves[id].left != partition.curves[id].right;
     let around = Around::of(partition, crosses);
     let mut done = vec![false; partition.subdomains.len()];
     let mut improved = 0;
-    let losses = losses(goals, rules, best, multipliers, worth);
+    let losses = losses(goals, rules, best, multipliers);
     let most = options.neighbourhoods_max as usize;
     let mut solved = 0;
     for (_, block) in losses {
@@ -52,21 +50,15 @@ pub fn improve(
         for &id in &place.subdomains[..place.subdomains.len() / 2] {
             done[id as usize] = true;
         }
-        let found = solver_rules::counts(partition, goals, rules, best, worth, &place, NODES);
+        let found = solver_rules::counts(partition, goals, rules, best, &place, NODES);
         improved += u32::from(found.is_some_and(|found| accept(partition, best, &place, &found)));
     }
     improved
 }
 
 /// What each block and its curves cost beyond what the multipliers account for, the worst first.
-fn losses(
-    goals: &Goals,
-    rules: &Rules,
-    draft: &Draft,
-    multipliers: &[i64],
-    worth: i64,
-) -> Vec<(i64, u32)> {
-    let tilts = Tilts::of(goals, rules, multipliers, worth);
+fn losses(goals: &Goals, rules: &Rules, draft: &Draft, multipliers: &[i64]) -> Vec<(i64, u32)> {
+    let tilts = Tilts::of(goals, rules, multipliers);
     let of_curve = |curve: u32| {
         let id = curve as usize;
         let (now, slope) = (draft.counts[id], tilts.slope[id]);
@@ -86,7 +78,7 @@ fn losses(
             .flatten()
             .map(|&curve| of_curve(curve))
             .sum();
-        let loss = worth * draft.excess(k) - accounted + curves;
+        let loss = rules.worth[k] * draft.excess(k) - accounted + curves;
         if loss > 0 {
             losses.push((loss, k as u32));
         }

@@ -32,7 +32,7 @@ pub struct Start {
 
 impl Start {
     /// Nearly the best multipliers without parity.
-    pub fn of(goals: &Goals, rules: &Rules, worth: i64) -> Start {
+    pub fn of(goals: &Goals, rules: &Rules) -> Start {
         let mut curves: Vec<Spring> = (0..goals.goal.len())
             .map(|curve| Spring::of(goals, curve))
             .collect();
@@ -44,19 +44,12 @@ impl Start {
             stride: strides(goals, rules, &curves),
         };
         for soft in SOFT {
-            start.climb(goals, rules, &mut curves, worth as f64, soft);
+            start.climb(goals, rules, &mut curves, soft);
         }
         start
     }
 
-    fn climb(
-        &mut self,
-        goals: &Goals,
-        rules: &Rules,
-        curves: &mut [Spring],
-        worth: f64,
-        soft: f64,
-    ) {
+    fn climb(&mut self, goals: &Goals, rules: &Rules, curves: &mut [Spring], soft: f64) {
         let at = &mut self.multipliers;
         let mut ahead = at.clone();
         let mut momentum = 1.0_f64;
@@ -74,7 +67,7 @@ impl Start {
                 for (row, rule) in rules.with_sides(block.sides.len()).iter().enumerate() {
                     next[row] = ahead[row] + soft * self.stride[k] * rule.real_excess(&totals);
                 }
-                rules.project(next, worth);
+                rules.project(k, next);
                 for row in 0..next.len() {
                     let step = next[row] - at[row];
                     uphill += (next[row] - ahead[row]) * step / self.stride[k];

@@ -57,7 +57,6 @@ pub fn counts(
     goals: &Goals,
     rules: &Rules,
     draft: &Draft,
-    worth: i64,
     place: &Neighbourhood,
     nodes_max: i32,
 ) -> Option<Vec<u32>> {
@@ -72,7 +71,7 @@ pub fn counts(
     even_rows(&mut problem, partition, draft, place, &columns);
     for &block in &place.blocks {
         let sides = &goals.blocks[block as usize].sides;
-        let price = problem.add_column(worth as f64 * SCALE, 0..);
+        let price = problem.add_column(rules.worth[block as usize] as f64 * SCALE, 0..);
         for rule in rules.with_sides(sides.len()) {
             let mut row = vec![(price, 1.0)];
             let mut constant = i64::from(rule.constant);

@@ -60,8 +60,8 @@ pub fn fit_patterns(
     options: &Options,
 ) -> Result<(Structure, Vec<u32>), Error> {
     let worth = units(options.worth);
-    let (rules, places) = (Rules::of(goals), Places::of(partition, goals));
-    let mut best = Draft::new(goals, &rules, &places, worth, even);
+    let (rules, places) = (Rules::of(goals, worth), Places::of(partition, goals));
+    let mut best = Draft::new(goals, &rules, &places, even);
     let mut made = Structure {
         blocks: goals.blocks.len() as u32,
         mapped_before: best.mapped(),
@@ -74,7 +74,6 @@ pub fn fit_patterns(
             partition,
             goals,
             rules: &rules,
-            worth,
             free,
             options,
             best,
@@ -114,7 +113,6 @@ struct Climb<'a> {
     partition: &'a Partition,
     goals: &'a Goals,
     rules: &'a Rules,
-    worth: i64,
     /// What free rounding costs, units.
     free: i64,
     options: &'a Options,
@@ -126,7 +124,7 @@ struct Climb<'a> {
 impl<'a> Climb<'a> {
     fn run(&mut self) -> Result<(), Error> {
         let rows = self.rules.start[self.goals.blocks.len()] as usize;
-        let start = Start::of(self.goals, self.rules, self.worth);
+        let start = Start::of(self.goals, self.rules);
         let mut at = start.multipliers;
         let metric = self.metric(&start.stride);
         let mut direction = vec![0.0; rows];
@@ -174,7 +172,7 @@ impl<'a> Climb<'a> {
     /// One T-join at `at`: its bound, whether that is the best so far, and the way up.
     fn look(&mut self, at: &[f64]) -> Result<(i64, bool, Vec<f64>), Error> {
         let multipliers: Vec<i64> = at.iter().map(|&u| u as i64).collect();
-        let tilts = Tilts::of(self.goals, self.rules, &multipliers, self.worth);
+        let tilts = Tilts::of(self.goals, self.rules, &multipliers);
         let programme = Programme::new(self.partition, self.goals, Some(&tilts))?;
         let join = minimum_join(&programme.graph, self.options.events_max);
         let bound = programme.base + (join.cuts.bound2() + 1) / 2;
@@ -195,7 +193,7 @@ impl<'a> Climb<'a> {
 
     /// HiGHS solves the programme at the multipliers of the proof; its counts are one more candidate.
     fn solve(&mut self, proof: Proof, solved: &mut Solved) -> Result<Proof, Error> {
-        let tilts = Tilts::of(self.goals, self.rules, &proof.multipliers, self.worth);
+        let tilts = Tilts::of(self.goals, self.rules, &proof.multipliers);
         let programme = Programme::new(self.partition, self.goals, Some(&tilts))?;
         let (join, said) = solve(&programme.graph, programme.base, proof.join, self.options);
         *solved = said;
@@ -235,7 +233,7 @@ impl<'a> Climb<'a> {
     fn feasible(&self, at: &mut [f64]) {
         for block in 0..self.goals.blocks.len() {
             let of_block = &mut at[self.rules.rows(block)];
-            self.rules.project(of_block, self.worth as f64);
+            self.rules.project(block, of_block);
         }
     }
 }
@@ -247,11 +245,11 @@ pub fn bound_units(
     worth: i64,
     made: &Structure,
 ) -> Result<i64, String> {
-    let rules = Rules::of(goals);
+    let rules = Rules::of(goals, worth);
     if made.multipliers.len() != rules.start[goals.blocks.len()] as usize {
         return Err("not a multiplier a rule".into());
     }
-    let tilts = Tilts::of(goals, &rules, &made.multipliers, worth);
+    let tilts = Tilts::of(goals, &rules, &made.multipliers);
     if made.multipliers.iter().any(|&u| u < 0) || tilts.bridge.iter().any(|&left| left < 0) {
         return Err("multipliers that prove nothing".into());
     }

@@ -21,21 +21,30 @@ pub struct Rules {
     by_sides: [Vec<Rule>; 7],
     /// Row of the first rule of each block, and the number of all rows.
     pub start: Vec<u32>,
+    /// What an excess of one costs in each block, units.
+    pub worth: Vec<i64>,
 }
 
 impl Rules {
-    /// The rules of the blocks of `goals`.
-    pub fn of(goals: &Goals) -> Rules {
+    /// The rules of the blocks of `goals`; `worth` is the price in a block of full-size edges, units.
+    pub fn of(goals: &Goals, worth: i64) -> Rules {
         let mut start = vec![0];
         for block in &goals.blocks {
             // A block has as many rules as sides.
             start.push(start[start.len() - 1] + block.sides.len() as u32);
         }
+        let worth = (goals.blocks.iter())
+            .map(|block| (worth as f64 * goals.block_weight(block)).round() as i64)
+            .collect();
         let by_sides = std::array::from_fn(|sides| match sides {
             0..3 => Vec::new(),
             _ => rules(sides),
         });
-        Rules { by_sides, start }
+        Rules {
+            by_sides,
+            start,
+            worth,
+        }
     }
 
     /// The rules of a block with this many sides.
@@ -48,9 +57,10 @@ impl Rules {
         self.start[block] as usize..self.start[block + 1] as usize
     }
 
-    /// Moves the multipliers of one block to the nearest ones that prove something: none below 0, at
-    /// most `worth` together.
-    pub fn project(&self, of_block: &mut [f64], worth: f64) {
+    /// Moves the multipliers of `block` to the nearest ones that prove something: none below 0, at
+    /// most its worth together.
+    pub fn project(&self, block: usize, of_block: &mut [f64]) {
+        let worth = self.worth[block] as f64;
         of_block.iter_mut().for_each(|u| *u = u.max(0.0));
         if of_block.iter().sum::<f64>() > worth {
             let by = surplus(of_block, worth);
@@ -90,14 +100,14 @@ pub struct Tilts {
 
 impl Tilts {
     /// The tilts of `multipliers`, one a rule of each block in order.
-    pub fn of(goals: &Goals, rules: &Rules, multipliers: &[i64], worth: i64) -> Tilts {
+    pub fn of(goals: &Goals, rules: &Rules, multipliers: &[i64]) -> Tilts {
         let mut tilts = Tilts {
             slope: vec![0; goals.goal.len()],
             bridge: Vec::with_capacity(goals.blocks.len()),
             constant: 0,
         };
         for (k, block) in goals.blocks.iter().enumerate() {
-            let mut bridge = worth;
+            let mut bridge = rules.worth[k];
             let mut slope = [0; 6];
             let of_block = rules.with_sides(block.sides.len());
             for (rule, &multiplier) in of_block.iter().zip(&multipliers[rules.rows(k)]) {

@@ -6,6 +6,7 @@ use crate::noding::arrangement::Arrangement;
 use crate::noding::arrangement::Piece;
 use crate::partition::subdomains::Partition;
 use crate::rungs::ANGLE_DEG;
+use crate::rungs::AROUND;
 use crate::rungs::CLEAR;
 use crate::rungs::CORNERS;
 use crate::rungs::LONG;
@@ -14,6 +15,7 @@ use crate::rungs::ONE_ROW;
 use crate::rungs::Options;
 use crate::rungs::RUN_ON;
 use crate::rungs::SHORTEST;
+use crate::rungs::SMALL_WALK;
 use crate::rungs::SNAP;
 use crate::rungs::propose::Candidate;
 use crate::rungs::propose::nearest;
@@ -54,6 +56,24 @@ enum Foot {
     Node(u32),
     /// Within an edge, which the half-edge has on the rung's side.
     Within(u32),
+}
+
+impl Foot {
+    fn within(self) -> Option<u32> {
+        match self {
+            Foot::Node(_) => None,
+            Foot::Within(half) => Some(half),
+        }
+    }
+}
+
+/// What became of a candidate.
+#[derive(Clone, Copy, PartialEq)]
+enum Laid {
+    Now,
+    /// Its only fault is that it would leave a small room odd.
+    Later,
+    Never,
 }
 
 /// A walk that a rung would close.
@@ -122,8 +142,22 @@ impl<'a> Ladder<'a> {
         self.arrangement.edges[edge as usize].contains(&node) || self.split_edge(node) == Some(edge)
     }
 
+    /// Lays the candidates that keep the promises, in order. Those that would leave a small room odd come
+    /// again at the end: by then others may have made it even.
+    pub fn lay_all(&mut self, candidates: Vec<Candidate>) {
+        let mut late = Vec::new();
+        for candidate in candidates {
+            if self.lay(candidate) == Laid::Later {
+                late.push(candidate);
+            }
+        }
+        for candidate in late {
+            self.lay(candidate);
+        }
+    }
+
     /// Lays the candidate's rung if it keeps the promises.
-    pub fn lay(&mut self, candidate: Candidate) {
+    fn lay(&mut self, candidate: Candidate) -> Laid {
         let Candidate { node, edge, .. } = candidate;
         let at = self.web.points[node as usize];
         let mut size = self.size_at[node as usize].min(self.size_of[edge as usize]);
@@ -136,13 +170,13 @@ impl<'a> Ladder<'a> {
         }
         let length = at.distance(to);
         if length < SHORTEST * size || length > longest * size {
-            return;
+            return Laid::Never;
         }
         let Some(from) = self.roomy_corner(node, to) else {
-            return;
+            return Laid::Never;
         };
         let Some(into) = self.foot_corner(node, foot, to) else {
-            return;
+            return Laid::Never;
         };
         let tip = match length <= ONE_ROW * size {
             true => LONG * size,
@@ -151,7 +185,10 @@ impl<'a> Ladder<'a> {
         if !self.closes_blocks(&from, foot, to, &into, tip)
             || !self.is_clear(candidate, to, foot, size)
         {
-            return;
+            return Laid::Never;
+        }
+        if self.makes_odd(&from, foot, to, &into, size) {
+            return Laid::Later;
         }
         let (target, into) = match foot {
             Foot::Node(target) => (target, into.out),
@@ -167,6 +204,7 @@ impl<'a> Ladder<'a> {
         self.web.bridge(from.out, into);
         self.placed.insert(self.laid.len() as u32, [at, to]);
         self.laid.push([node, target]);
+        Laid::Now
     }
 
     /// The part of an edge that is nearest to a point now.
@@ -248,6 +286,71 @@ impl<'a> Ladder<'a> {
             beyond: [0.0, parts[1]],
         };
         self.is_block(into.out, from.out, ahead, tip) && self.is_block(from.out, stop, back, tip)
+    }
+
+    /// True if there are more small odd rooms with the rung than without it.
+    fn makes_odd(&self, from: &Corner, foot: Foot, to: Point, into: &Corner, size: f64) -> bool {
+        let around = AROUND * size;
+        let rung = self.web.points[self.web.tail[from.out as usize] as usize].distance(to);
+        let stop = match foot {
+            Foot::Node(_) => into.out,
+            Foot::Within(half) => self.web.next[half as usize],
+        };
+        let [ahead, back] = [(into.out, from.out), (from.out, stop)].map(|(first, stop)| {
+            let edges = self.edges_of_small(first, stop, around - rung, foot.within(), to)?;
+            Some(edges + 1)
+        });
+        let whole = self.edges_of_small(from.out, from.out, around, None, to);
+        // on the other side of a slit is the same room again
+        let across = (foot.within().map(|half| half ^ 1))
+            .filter(|&half| self.web.is_inside(half) && !self.is_soon_after(half, from.out))
+            .and_then(|half| self.edges_of_small(half, half, around, None, to));
+        let odd = |edges: Option<usize>| i32::from(edges.is_some_and(|edges| edges % 2 == 1));
+        let even = |edges: Option<usize>| i32::from(edges.is_some_and(|edges| edges % 2 == 0));
+        odd(ahead) + odd(back) + even(across) > odd(whole) + odd(across)
+    }
+
+    /// Number of edges of a walk from the half-edge `first` until the one before `stop`, if they are few
+    /// and together shorter than `around`; `cut`, the half-edge with the foot `to`, is there in part.
+    fn edges_of_small(
+        &self,
+        first: u32,
+        stop: u32,
+        around: f64,
+        cut: Option<u32>,
+        to: Point,
+    ) -> Option<usize> {
+        let (mut half, mut total, mut also) = (first, 0.0, 0);
+        for edges in 1..=SMALL_WALK {
+            total += match cut == Some(half) {
+                true => {
+                    let [a, b] = self.web.ends(half >> 1).map(|end| end.distance(to));
+                    // the walk leaves the foot along `first`, or comes to it
+                    if (half == first) == (half & 1 == 0) {
+                        b
+                    } else {
+                        a
+                    }
+                }
+                false => self.web.length(half),
+            };
+            // the foot splits the other side of a slit, too
+            also += usize::from(cut == Some(half ^ 1));
+            if total >= around {
+                return None;
+            }
+            half = self.web.next[half as usize];
+            if half == stop {
+                return Some(edges + also);
+            }
+        }
+        None
+    }
+
+    /// True if the walk comes to `sought` within the length of a small one from `half` on.
+    fn is_soon_after(&self, half: u32, sought: u32) -> bool {
+        let walk = std::iter::successors(Some(half), |&it| Some(self.web.next[it as usize]));
+        walk.take(SMALL_WALK).any(|it| it == sought)
     }
 
     /// Follows the walk from the half-edge `first` until the one before `stop`. One that comes back

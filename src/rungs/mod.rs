@@ -22,6 +22,12 @@
 //!    1 % quantile of the scaled Jacobian falls by .01 to .02, and the time-step proxy by a quarter;
 //!    without long tips, both are up to 3 % less where streets meet at acute angles.)
 //! 5. Nodes, lines and tags are as before; the same input gives the same rungs.
+//! 6. There are not more small odd rooms than before: walks of at most [`SMALL_WALK`] edges, together
+//!    shorter than [`AROUND`] sizes, whose number is odd. Parity would have to halve a short edge of
+//!    each, and of every room on the way to the next odd one. (Measured on eight cities: the .1 %
+//!    quantile of the time-step proxy grows by up to 7 %, that of edges by up to 3 %, and up to 1 % of
+//!    the quads go; the 1 % quantile of shapes grows or falls by up to .006. For larger rooms, too, it falls by
+//!    .01 to .02.)
 //!
 //! # Needs
 //! A cleaned arrangement, with or without lattice seams, and its partition.
@@ -29,7 +35,7 @@
 //! # Method
 //! 1. `propose`: from each node with room, the edges near it.
 //! 2. `ladder`: takes them one by one, the shortest first, and lays those that keep the promises
-//!    with all laid before. A rung goes to the foot of its node, or to the end of the edge if that
+//!    with all laid before; those that break the last one only come again at the end. A rung goes to the foot of its node, or to the end of the edge if that
 //!    is near. `web`: the faces as half-edges that can be split and bridged, so that the walks that
 //!    a rung would close are known before it is laid.
 //!
@@ -104,6 +110,13 @@ pub const LONG: f64 = 3.0;
 /// nodes beside open country, and without any the mean of dense places is .002 less.
 pub const RUN_ON: f64 = 0.65;
 
+/// A walk of at most so many edges, together shorter than [`AROUND`], is a small room: each edge has
+/// one interval, so that parity must halve one if they are odd in number.
+pub const SMALL_WALK: usize = 8;
+
+/// The circumference of a small room, sizes: in a larger one, half an edge makes no tiny cells.
+pub const AROUND: f64 = 3.0;
+
 /// Lays rungs wherever they fit.
 pub fn lay(
     domain: &Domain,
@@ -121,13 +134,9 @@ pub fn lay(
     let size_of = edge_sizes(domain, sizes, arrangement);
     let mut ladder = Ladder::new(arrangement, partition, &size_of, options);
     let given = arrangement.points.len() as u32;
-    for candidate in propose(&ladder, 0..given) {
-        ladder.lay(candidate);
-    }
+    ladder.lay_all(propose(&ladder, 0..given));
     let feet = given..ladder.web.points.len() as u32;
-    for candidate in propose(&ladder, feet) {
-        ladder.lay(candidate);
-    }
+    ladder.lay_all(propose(&ladder, feet));
     Runged {
         rungs: ladder.rungs() as u64,
         arrangement: ladder.arrangement(),

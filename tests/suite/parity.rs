@@ -639,8 +639,11 @@ fn brute_force_with_price(partition: &Partition, goals: &Goals, worth: i64) -> O
         }
         if total.iter().all(|total| total % 2 == 0) {
             let cost: i64 = (0..n).map(|id| cost_units(goals, id, counts[id])).sum();
-            let price: i64 = goals.blocks.iter().map(|it| excess(it, &counts)).sum();
-            let all = cost + worth * price;
+            let price = |it: &Block| {
+                let each = (worth as f64 * goals.block_weight(it)).round() as i64;
+                each * excess(it, &counts)
+            };
+            let all = cost + goals.blocks.iter().map(price).sum::<i64>();
             best = Some(best.map_or(all, |least: i64| least.min(all)));
         }
         let Some(next) = (0..n).find(|&id| counts[id] < goals.upper[id]) else {
@@ -676,7 +679,7 @@ fn excess(block: &Block, counts: &[u32]) -> i64 {
     }
 }
 
-/// A block of `sides` sides with others around it, which are no blocks.
+/// A block of `sides` sides with others around it, which are no blocks; curves of any weight.
 fn flower(sides: usize, dice: &mut Dice) -> (Partition, Goals) {
     let rim: Vec<(u32, u32)> = (0..sides)
         .map(|k| (0, if k % 2 == 0 { 1 } else { OUTSIDE }))
@@ -684,6 +687,7 @@ fn flower(sides: usize, dice: &mut Dice) -> (Partition, Goals) {
         .collect();
     let goal: Vec<f64> = rim.iter().map(|_| 1.0 + 3.0 * dice.roll()).collect();
     let mut g = goals(&goal, 1);
+    g.weight.fill_with(|| 1.0 + 8.0 * dice.roll());
     g.blocks.push(Block {
         subdomain: 0,
         sides: (0..sides as u32).map(|curve| vec![curve]).collect(),

@@ -80,6 +80,7 @@ fn lay_well(lines: &[(Role, Vec<At>)]) -> Laid {
     let after = partitioned(&domain, &runged.arrangement);
     check_blocks(&runged.arrangement, &after);
     check_feet(&arrangement, &runged.arrangement);
+    check_small_rooms((&arrangement, &before), (&runged.arrangement, &after));
     let is_kept = |p: &Point| runged.arrangement.points.binary_search(p).is_ok();
     assert!(arrangement.points.iter().all(is_kept));
     let lengths = [&arrangement, &runged.arrangement].map(|it| covered_m(&domain, it));
@@ -103,24 +104,46 @@ fn check_feet(given: &Arrangement, runged: &Arrangement) {
         let p = &runged.points[node as usize];
         given.points.binary_search(p).is_err()
     };
-    let mut lengths_m: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
+    // in sizes
+    let mut lengths: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
     for (edge, nodes) in runged.edges.iter().enumerate() {
         if runged.pieces_of(edge as u32).is_empty() {
             let [a, b] = nodes.map(|node| runged.points[node as usize]);
             for &foot in nodes.iter().filter(|it| is_foot(it)) {
-                lengths_m
+                lengths
                     .entry(foot)
                     .or_default()
                     .push(a.distance(b) / 1000.0);
             }
         }
     }
-    for (_, lengths_m) in lengths_m {
-        let long = lengths_m
-            .iter()
-            .filter(|&&it| it > rungs::RUN_ON * SIZE_M + 0.01);
-        assert!(long.count() <= 1, "rungs of {lengths_m:?} m at a foot");
+    for (_, lengths) in lengths {
+        let long = lengths.iter().filter(|&&it| it > rungs::RUN_ON + 0.01);
+        assert!(long.count() <= 1, "rungs of {lengths:?} sizes at a foot");
     }
+}
+
+/// Promise 6, in sizes: there are not more small odd rooms than before. Feet are rounded to the grid, so that a
+/// room may seem a little larger or smaller than it was when its rung was laid.
+fn check_small_rooms(given: (&Arrangement, &Partition), runged: (&Arrangement, &Partition)) {
+    let odd = |(arrangement, partition): (&Arrangement, &Partition), slack: f64| {
+        let is_odd = |walk: &Vec<u32>| {
+            let edges: Vec<u32> = (walk.iter())
+                .flat_map(|half| &partition.curves[(half >> 1) as usize].edges)
+                .copied()
+                .collect();
+            let around: f64 = (edges.iter())
+                .map(|&edge| arrangement.edges[edge as usize])
+                .map(|ends| ends.map(|node| arrangement.points[node as usize]))
+                .map(|[a, b]| a.distance(b) / 1000.0)
+                .sum();
+            let is_small = around < rungs::AROUND + slack;
+            is_small && edges.len() <= rungs::SMALL_WALK && edges.len() % 2 == 1
+        };
+        let walks = partition.subdomains.iter().flat_map(|it| &it.walks);
+        walks.filter(|walk| is_odd(walk)).count()
+    };
+    assert!(odd(runged, -0.02) <= odd(given, 0.02));
 }
 
 /// Promise 4, from the partition alone: walks with a rung on them have four corners, or three and
@@ -296,6 +319,26 @@ fn feet_get_rungs_across_the_next_narrow_strip() {
     };
     assert_eq!(rungs(0.6), 2);
     assert_eq!(rungs(0.7), 1);
+}
+
+/// A court of five short sides is odd; with the rung that its re-entrant side calls for it would be two
+/// courts of which one is. Where the junction is a corner instead, both are even.
+#[test]
+fn no_rung_leaves_a_small_room_odd() {
+    let rungs = |junction: bool| {
+        let mut lines = vec![rectangle(8.0, 6.0)];
+        let court = [(3.0, 3.0), (3.45, 3.0), (3.9, 3.0), (3.9, 3.6), (3.0, 3.6)];
+        lines.push(line(&[&court[..], &court[..1]].concat()));
+        lines.push(line(&[(3.45, 3.0), (3.45, 1.0)]));
+        if junction {
+            lines.push(line(&[(3.46, 3.6), (3.46, 5.0)]));
+        }
+        let made = lay_well(&lines);
+        made.after.subdomains.len() - made.before.subdomains.len()
+    };
+    // from the junction to the foot in the middle of the other side, .45 from both corners
+    assert_eq!(rungs(false), 1);
+    assert_eq!(rungs(true), 1);
 }
 
 /// A slit that ends shortly before a wall is prolonged to it.
