@@ -34,6 +34,9 @@ pub(crate) struct Kernel {
     pub spoke: Vec<u32>,
     /// 1 / (wished edge length)^2 around each node, 1 / m2; set by `smooth::wish`.
     pub scale: Vec<f64>,
+    /// How far from its best place each node may be, wished lengths: what it, or a neighbour since,
+    /// moved by last; infinite if its surroundings are new.
+    pub unrest: Vec<f32>,
     /// Corners, counter-clockwise; all [`NONE`] if the quad is gone.
     pub quads: Vec<[u32; 4]>,
     /// The same edge in the neighbour; [`NONE`] on the outline.
@@ -71,6 +74,7 @@ impl Kernel {
             valence: Vec::new(),
             spoke: Vec::new(),
             scale: Vec::new(),
+            unrest: Vec::new(),
             quads: Vec::with_capacity(zone.len()),
             twins: vec![[NONE; 4]; zone.len()],
             vacant: Vec::new(),
@@ -98,6 +102,7 @@ impl Kernel {
         self.valence.push(0);
         self.spoke.push(NONE);
         self.scale.push(1.0);
+        self.unrest.push(f32::INFINITY);
         self.nodes.len() as u32 - 1
     }
 
@@ -111,6 +116,7 @@ impl Kernel {
         self.valence.pop();
         self.spoke.pop();
         self.scale.pop();
+        self.unrest.pop();
     }
 
     /// Puts the quads and positions back into the draft.
