@@ -8,6 +8,7 @@
 
 use crate::geometry::point::Xy;
 use crate::geometry::quad::scaled_jacobian;
+use crate::meshing::buckets::sorted_by_node;
 use crate::meshing::draft::Draft;
 use crate::meshing::triangulate::NONE;
 use crate::meshing::visits::Visits;
@@ -148,8 +149,8 @@ impl Kernel {
             }
             edges.push((u64::from(a.min(b)) << 32 | u64::from(a.max(b)), side));
         }
-        edges.sort_unstable();
-        for same in edges.chunk_by(|p, q| p.0 == q.0) {
+        let lower = |&(edge, _): &(u64, u32)| (edge >> 32) as usize;
+        for same in sorted_by_node(&edges, self.nodes.len(), lower).chunk_by(|p, q| p.0 == q.0) {
             // Two nodes with several edges between them: whose twin is whose cannot be said. Without
             // twins they are outline, and the check of the promises refuses the patch.
             if let &[(_, side), (_, twin)] = same

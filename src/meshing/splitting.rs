@@ -224,13 +224,15 @@ pub(crate) fn lay_line(
     let [a, b] = ends.map(|node| sheet.nodes[node as usize]);
     let length = distance(a, b);
     let steps = 8 * count;
-    let mut wished = vec![0.0];
+    let mut wished = Vec::with_capacity(steps + 1);
+    wished.push(0.0);
     for step in 0..steps {
         let along = (step as f64 + 0.5) / steps as f64 * length;
         let edges = 1.0 / wished_m(along, length, ends_m, size_m);
         wished.push(wished[step] + edges);
     }
-    let mut line = vec![ends[0]];
+    let mut line = Vec::with_capacity(count + 1);
+    line.push(ends[0]);
     for edge in 1..count {
         let sum = wished[steps] * edge as f64 / count as f64;
         let step = wished.partition_point(|&w| w < sum).max(1);
