@@ -86,12 +86,19 @@ pub(crate) fn smooth_all(kernel: &mut Kernel, sweeps: usize, rest: f32) {
 
 /// The neighbours of a node that has moved are not at rest any more.
 fn stir(kernel: &mut Kernel, node: u32, moved: f32) {
-    if moved > 0.0 {
-        for side in kernel.spokes(node) {
-            for near in [kernel.end(side), kernel.end(after(side))] {
-                let unrest = &mut kernel.unrest[near as usize];
-                *unrest = unrest.max(moved);
-            }
+    if moved == 0.0 {
+        return;
+    }
+    let first = kernel.spoke[node as usize];
+    let mut side = first;
+    while side != NONE {
+        for near in [kernel.end(side), kernel.end(after(side))] {
+            let unrest = &mut kernel.unrest[near as usize];
+            *unrest = unrest.max(moved);
+        }
+        side = kernel.twin(before(side));
+        if side == first {
+            break;
         }
     }
 }
