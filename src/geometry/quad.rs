@@ -58,6 +58,42 @@ pub fn hydraulic_size_m(p: &[Xy; 4]) -> f64 {
     }
 }
 
+/// Several measures of one quad.
+pub struct Measured {
+    /// See [`scaled_jacobian`].
+    pub scaled_jacobian: f64,
+    /// See [`hydraulic_size_m`].
+    pub hydraulic_size_m: f64,
+    /// Lengths of the sides, from each corner to the next, metres.
+    pub sides_m: [f64; 4],
+}
+
+/// Measures a quad for the price of its four sides.
+pub fn measure(p: &[Xy; 4]) -> Measured {
+    let side = |k: usize| {
+        let (a, b) = (p[k], p[(k + 1) & 3]);
+        [b[0] - a[0], b[1] - a[1]]
+    };
+    let sides = [side(0), side(1), side(2), side(3)];
+    let sides_m = sides.map(|it| (it[0] * it[0] + it[1] * it[1]).sqrt());
+    let mut least = 1.0_f64;
+    for k in 0..4 {
+        let last = (k + 3) & 3;
+        let jacobian = sides[last][0] * sides[k][1] - sides[last][1] * sides[k][0];
+        let scale = sides_m[k] * sides_m[last];
+        least = least.min(if scale > 0.0 { jacobian / scale } else { 0.0 });
+    }
+    let perimeter: f64 = sides_m.iter().sum();
+    Measured {
+        scaled_jacobian: least,
+        hydraulic_size_m: match perimeter > 0.0 {
+            true => 4.0 * area(p).abs() / perimeter,
+            false => 0.0,
+        },
+        sides_m,
+    }
+}
+
 /// The interior corner angles, degrees; above 180 at a concave corner.
 pub fn corner_angles_deg(p: &[Xy; 4]) -> [f64; 4] {
     std::array::from_fn(|k| {

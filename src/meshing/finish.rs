@@ -10,7 +10,6 @@ use crate::meshing::patch::Loops;
 use crate::meshing::patch::Method;
 use crate::meshing::patch::Patch;
 use crate::meshing::regular::regularise;
-use crate::meshing::smooth::PERFECT;
 use crate::meshing::smooth::lift_worst;
 use crate::meshing::smooth::smooth_all;
 use crate::meshing::smooth::untangle;
@@ -43,8 +42,8 @@ const LIFTED: f64 = 0.75;
 
 /// Moves below these shares of the wished edge length do not matter while the topology still
 /// changes, and at the end. Measured: half of either changes the mean shape by less than .0005.
-const ROUGHLY: f64 = 0.04;
-const FINELY: f64 = 0.01;
+const ROUGHLY: f32 = 0.04;
+const FINELY: f32 = 0.01;
 
 /// Finishes a draft; `None` if the result would break a promise.
 pub(crate) fn finish(
@@ -111,9 +110,9 @@ fn settle(mut cleaner: Cleaner, draft: &mut Draft, size_m: f64) {
     cleaner.kernel.store(draft);
 }
 
-fn smooth(cleaner: &mut Cleaner, sweeps: usize, rest: f64) {
+fn smooth(cleaner: &mut Cleaner, sweeps: usize, rest: f32) {
     untangle(&mut cleaner.kernel, POOR, 6, rest);
-    smooth_all(&mut cleaner.kernel, PERFECT, sweeps, rest);
+    smooth_all(&mut cleaner.kernel, sweeps, rest);
 }
 
 /// Visits at one place become one node; unused nodes go.

@@ -314,6 +314,7 @@ impl Cleaner {
             for side in self.kernel.spokes(node) {
                 for corner in self.kernel.quads[quad_of(side) as usize] {
                     self.changed[corner as usize] = self.clock;
+                    self.kernel.unrest[corner as usize] = f32::INFINITY;
                 }
             }
         }

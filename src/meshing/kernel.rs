@@ -8,6 +8,7 @@
 
 use crate::geometry::point::Xy;
 use crate::geometry::quad::scaled_jacobian;
+use crate::meshing::buckets::sorted_by_node;
 use crate::meshing::draft::Draft;
 use crate::meshing::triangulate::NONE;
 use crate::meshing::visits::Visits;
@@ -34,6 +35,9 @@ pub(crate) struct Kernel {
     pub spoke: Vec<u32>,
     /// 1 / (wished edge length)^2 around each node, 1 / m2; set by `smooth::wish`.
     pub scale: Vec<f64>,
+    /// How far from its best place each node may be, wished lengths: what it, or a neighbour since,
+    /// moved by last; infinite if its surroundings are new.
+    pub unrest: Vec<f32>,
     /// Corners, counter-clockwise; all [`NONE`] if the quad is gone.
     pub quads: Vec<[u32; 4]>,
     /// The same edge in the neighbour; [`NONE`] on the outline.
@@ -71,6 +75,7 @@ impl Kernel {
             valence: Vec::new(),
             spoke: Vec::new(),
             scale: Vec::new(),
+            unrest: Vec::new(),
             quads: Vec::with_capacity(zone.len()),
             twins: vec![[NONE; 4]; zone.len()],
             vacant: Vec::new(),
@@ -98,6 +103,7 @@ impl Kernel {
         self.valence.push(0);
         self.spoke.push(NONE);
         self.scale.push(1.0);
+        self.unrest.push(f32::INFINITY);
         self.nodes.len() as u32 - 1
     }
 
@@ -111,6 +117,7 @@ impl Kernel {
         self.valence.pop();
         self.spoke.pop();
         self.scale.pop();
+        self.unrest.pop();
     }
 
     /// Puts the quads and positions back into the draft.
@@ -142,8 +149,8 @@ impl Kernel {
             }
             edges.push((u64::from(a.min(b)) << 32 | u64::from(a.max(b)), side));
         }
-        edges.sort_unstable();
-        for same in edges.chunk_by(|p, q| p.0 == q.0) {
+        let lower = |&(edge, _): &(u64, u32)| (edge >> 32) as usize;
+        for same in sorted_by_node(&edges, self.nodes.len(), lower).chunk_by(|p, q| p.0 == q.0) {
             // Two nodes with several edges between them: whose twin is whose cannot be said. Without
             // twins they are outline, and the check of the promises refuses the patch.
             if let &[(_, side), (_, twin)] = same

@@ -50,6 +50,7 @@
 //! sub-domain into parts is done in `seams`.
 
 mod bridges;
+mod buckets;
 mod catalogue;
 mod cavity;
 pub mod check;

@@ -1,7 +1,6 @@
 //! One number that says which of several patches of a sub-domain is best.
 
-use crate::geometry::quad::hydraulic_size_m;
-use crate::geometry::quad::scaled_jacobian;
+use crate::geometry::quad::measure;
 use crate::meshing::patch::Loops;
 use crate::meshing::patch::Patch;
 use crate::meshing::visits::Visits;
@@ -49,13 +48,14 @@ impl Score {
         let mut valence = vec![0_u32; patch.nodes.len()];
         for (k, quad) in patch.quads.iter().enumerate() {
             let corners = quad.map(|node| patch.nodes[node as usize]);
-            let quality = scaled_jacobian(&corners);
+            let measured = measure(&corners);
+            let quality = measured.scaled_jacobian;
             score.mean += quality;
             if quality < score.least {
                 score.least = quality;
                 score.worst_quad = k as u32;
             }
-            score.size = score.size.min(hydraulic_size_m(&corners) / loops.size_m);
+            score.size = score.size.min(measured.hydraulic_size_m / loops.size_m);
             for &node in quad {
                 valence[node as usize] += 1;
             }

@@ -88,7 +88,8 @@ impl Sheet {
     /// Nodes on the straight line from `from` to `to`, both included, in `count` equal steps.
     pub fn line(&mut self, from: u32, to: u32, count: usize) -> Vec<u32> {
         let (a, b) = (self.nodes[from as usize], self.nodes[to as usize]);
-        let mut line = vec![from];
+        let mut line = Vec::with_capacity(count + 1);
+        line.push(from);
         for step in 1..count {
             let t = step as f64 / count as f64;
             line.push(self.node([a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]));
@@ -163,8 +164,11 @@ impl Sheet {
         debug_assert!(m >= 1 && n >= 1 && north.len() == m + 1 && east.len() == n + 1);
         let along = [south, north, west, east].map(|side| self.arc(side));
         let mut row = south.to_vec();
+        let mut next = Vec::with_capacity(m + 1);
+        self.nodes.reserve((m - 1) * (n - 1));
+        self.quads.reserve(m * n);
         for j in 1..=n {
-            let mut next = Vec::with_capacity(m + 1);
+            next.clear();
             for i in 0..=m {
                 next.push(match (i, j) {
                     (_, j) if j == n => north[i],
@@ -179,7 +183,7 @@ impl Sheet {
             for i in 0..m {
                 self.quads.push([row[i], row[i + 1], next[i + 1], next[i]]);
             }
-            row = next;
+            std::mem::swap(&mut row, &mut next);
         }
     }
 

@@ -6,8 +6,7 @@
 
 use crate::geometry::point::Xy;
 use crate::geometry::quad::distance;
-use crate::geometry::quad::hydraulic_size_m;
-use crate::geometry::quad::scaled_jacobian;
+use crate::geometry::quad::measure;
 use crate::meshing::kernel::Kernel;
 use crate::meshing::kernel::after;
 use crate::meshing::kernel::before;
@@ -29,7 +28,10 @@ pub(crate) const PERFECT: Phase = Phase {
 };
 
 /// Below this move, as a share of the wished edge length, local smoothing has done its work.
-const LOCAL_REST: f64 = 1e-2;
+const LOCAL_REST: f32 = 1e-2;
+
+/// A shorter step, in wished lengths, is not taken: no rest is as small.
+const LEAST_STEP: f64 = 1e-3;
 
 /// Sets the wished edge length of every node: on the outline half the length of its two edges,
 /// inside the mean of the neighbours drawn towards `size_m`.
@@ -60,29 +62,63 @@ pub(crate) fn wish(kernel: &mut Kernel, size_m: f64) {
     }
 }
 
-/// Smooths all free nodes: at most `sweeps` sweeps, in the order of their numbers. A node that moves
-/// by less than `rest` wished lengths rests until a neighbour moves.
-pub(crate) fn smooth_all(kernel: &mut Kernel, phase: Phase, sweeps: usize, rest: f64) {
-    let mut awake = vec![true; kernel.nodes.len()];
-    sweep(kernel, phase, sweeps, rest, &mut awake);
+/// Smooths all free nodes that are not at rest: at most `sweeps` sweeps, in the order of their
+/// numbers. A node that moves by less than `rest` wished lengths rests until a neighbour moves
+/// farther, or what is around it changes.
+pub(crate) fn smooth_all(kernel: &mut Kernel, sweeps: usize, rest: f32) {
+    let nodes = free_nodes(kernel);
+    let mut star = Star::default();
+    for _ in 0..sweeps {
+        let mut any = false;
+        for &node in &nodes {
+            if kernel.unrest[node as usize] > rest {
+                let moved = relax(kernel, &mut star, node, PERFECT);
+                kernel.unrest[node as usize] = moved;
+                stir(kernel, node, moved);
+                any |= moved > rest;
+            }
+        }
+        if !any {
+            break;
+        }
+    }
+}
+
+/// The neighbours of a node that has moved are not at rest any more.
+fn stir(kernel: &mut Kernel, node: u32, moved: f32) {
+    if moved == 0.0 {
+        return;
+    }
+    let first = kernel.spoke[node as usize];
+    let mut side = first;
+    while side != NONE {
+        for near in [kernel.end(side), kernel.end(after(side))] {
+            let unrest = &mut kernel.unrest[near as usize];
+            *unrest = unrest.max(moved);
+        }
+        side = kernel.twin(before(side));
+        if side == first {
+            break;
+        }
+    }
 }
 
 /// Opens tangles: smooths around quads below `below` only, and as far as that makes others move.
-pub(crate) fn untangle(kernel: &mut Kernel, below: f64, sweeps: usize, rest: f64) {
+pub(crate) fn untangle(kernel: &mut Kernel, below: f64, sweeps: usize, rest: f32) {
     let mut awake = vec![false; kernel.nodes.len()];
+    let mut any = false;
     for quad in 0..kernel.quads.len() as u32 {
         if kernel.lives(quad) && kernel.quality(quad) < below {
+            any = true;
             for node in kernel.quads[quad as usize] {
                 awake[node as usize] = true;
             }
         }
     }
-    sweep(kernel, OPEN, sweeps, rest, &mut awake);
-}
-
-fn sweep(kernel: &mut Kernel, phase: Phase, sweeps: usize, rest: f64, awake: &mut [bool]) {
-    let free = |node: &u32| !kernel.held[*node as usize] && kernel.valence[*node as usize] > 0;
-    let nodes: Vec<u32> = (0..kernel.nodes.len() as u32).filter(free).collect();
+    if !any {
+        return;
+    }
+    let nodes = free_nodes(kernel);
     let mut star = Star::default();
     for _ in 0..sweeps {
         let mut any = false;
@@ -90,7 +126,13 @@ fn sweep(kernel: &mut Kernel, phase: Phase, sweeps: usize, rest: f64, awake: &mu
             if !std::mem::take(&mut awake[node as usize]) {
                 continue;
             }
-            if relax(kernel, &mut star, node, phase) > rest {
+            let moved = relax(kernel, &mut star, node, OPEN);
+            if moved > 0.0 {
+                // Where the other phase would have it is not known.
+                kernel.unrest[node as usize] = f32::INFINITY;
+                stir(kernel, node, moved);
+            }
+            if moved > rest {
                 any = true;
                 awake[node as usize] = true;
                 for side in kernel.spokes(node) {
@@ -105,11 +147,16 @@ fn sweep(kernel: &mut Kernel, phase: Phase, sweeps: usize, rest: f64, awake: &mu
     }
 }
 
+fn free_nodes(kernel: &Kernel) -> Vec<u32> {
+    let free = |node: &u32| !kernel.held[*node as usize] && kernel.valence[*node as usize] > 0;
+    (0..kernel.nodes.len() as u32).filter(free).collect()
+}
+
 /// Smooths a few nodes, in the given order.
 pub(crate) fn smooth_few(kernel: &mut Kernel, nodes: &[u32], phase: Phase, sweeps: usize) {
     let mut star = Star::default();
     for _ in 0..sweeps {
-        let mut most = 0.0_f64;
+        let mut most = 0.0_f32;
         for &node in nodes {
             most = most.max(relax(kernel, &mut star, node, phase));
         }
@@ -125,10 +172,10 @@ const LIFTS: usize = 8;
 /// Raises the least [`worth`] around the free nodes of quads below `below`, by compass search: the
 /// few worst quads are ruled by lengths that the wished ones know nothing of.
 pub(crate) fn lift_worst(kernel: &mut Kernel, below: f64, size_m: f64) {
+    let mut doubtful: Vec<u32> = (0..kernel.quads.len() as u32).collect();
     for _ in 0..LIFTS {
-        let poor = |&quad: &u32| kernel.lives(quad) && worth(kernel, quad, size_m) < below;
-        let quads: Vec<u32> = (0..kernel.quads.len() as u32).filter(poor).collect();
-        let mut nodes: Vec<u32> = quads
+        doubtful.retain(|&quad| kernel.lives(quad) && worth(kernel, quad, size_m) < below);
+        let mut nodes: Vec<u32> = doubtful
             .iter()
             .flat_map(|&quad| kernel.quads[quad as usize])
             .collect();
@@ -137,11 +184,17 @@ pub(crate) fn lift_worst(kernel: &mut Kernel, below: f64, size_m: f64) {
         nodes.dedup();
         let mut any = false;
         for node in nodes {
+            let start = kernel.nodes[node as usize];
             any |= lift(kernel, node, size_m);
+            if kernel.nodes[node as usize] != start {
+                doubtful.extend(kernel.spokes(node).iter().map(|&side| quad_of(side)));
+            }
         }
         if !any {
             break;
         }
+        doubtful.sort_unstable();
+        doubtful.dedup();
     }
 }
 
@@ -172,19 +225,19 @@ const COARSER: f64 = 2.0;
 
 /// The scaled Jacobian, less if the quad is small or has a short side.
 pub(crate) fn worth(kernel: &Kernel, quad: u32, size_m: f64) -> f64 {
-    let corners = kernel.corners(quad);
-    let shape = scaled_jacobian(&corners);
+    let measured = measure(&kernel.corners(quad));
+    let shape = measured.scaled_jacobian;
     if shape > 0.0 {
         let shortest_m = (0..4)
             .filter(|&k| kernel.twins[quad as usize][k] != NONE)
-            .map(|k| distance(corners[k], corners[(k + 1) % 4]))
+            .map(|k| measured.sides_m[k])
             .fold(f64::INFINITY, f64::min);
         let scales = kernel.quads[quad as usize].map(|node| kernel.scale[node as usize]);
         let coarsest = scales.into_iter().fold(f64::INFINITY, f64::min);
         let size_m = size_m.min(COARSER / coarsest.sqrt());
         let side = LONG * shortest_m / size_m;
         shape
-            .min(LARGE * hydraulic_size_m(&corners) / size_m)
+            .min(LARGE * measured.hydraulic_size_m / size_m)
             .min((side * side / ENOUGH).max(side.min(SPARED)))
     } else {
         shape
@@ -217,9 +270,10 @@ fn lift(kernel: &mut Kernel, node: u32, size_m: f64) -> bool {
         let length = |&side: &u32| distance(at, kernel.nodes[kernel.end(side) as usize]);
         spokes.iter().map(length).fold(f64::INFINITY, f64::min)
     };
+    let quality = |kernel: &Kernel, side: u32| worth(kernel, quad_of(side), size_m);
     let least = |kernel: &Kernel| {
-        let quality = |&side: &u32| worth(kernel, quad_of(side), size_m);
-        spokes.iter().map(quality).fold(f64::INFINITY, f64::min)
+        let worths = spokes.iter().map(|&side| quality(kernel, side));
+        worths.fold(f64::INFINITY, f64::min)
     };
     let mut step = 0.3 * shortest(kernel);
     let floor = shortest(kernel).min(APART / kernel.scale[node as usize].sqrt());
@@ -230,9 +284,10 @@ fn lift(kernel: &mut Kernel, node: u32, size_m: f64) -> bool {
         let mut to = at;
         for [x, y] in COMPASS {
             kernel.nodes[node as usize] = [at[0] + step * x, at[1] + step * y];
-            let quality = least(kernel);
-            if quality > best && shortest(kernel) >= floor {
-                best = quality;
+            // Most directions fail at the first quad.
+            let better = |&side: &u32| quality(kernel, side) > best;
+            if spokes.iter().all(better) && shortest(kernel) >= floor {
+                best = least(kernel);
                 to = kernel.nodes[node as usize];
             }
         }
@@ -244,22 +299,28 @@ fn lift(kernel: &mut Kernel, node: u32, size_m: f64) -> bool {
     best > start + 1e-3
 }
 
+/// A corner counts as inverted up to this d: what single precision may get wrong.
+const UPRIGHT: f32 = 1e-6;
+
 /// One Newton step of one node; returns how far it moved, in wished lengths. Corners that are not
 /// inverted stay so: small ones lie below epsilon, where the barrier alone would let them through.
-fn relax(kernel: &mut Kernel, star: &mut Star, node: u32, phase: Phase) -> f64 {
-    star.gather(kernel, node);
-    let at = kernel.nodes[node as usize];
-    let local = star.expand(at, phase);
+fn relax(kernel: &mut Kernel, star: &mut Star, node: u32, phase: Phase) -> f32 {
+    let per_m = kernel.scale[node as usize].sqrt();
+    star.gather(kernel, node, per_m);
+    let local = star.expand(phase);
     let step = local.newton_step();
-    let length = 1.0 / kernel.scale[node as usize].sqrt();
     let reach = (step[0] * step[0] + step[1] * step[1]).sqrt();
-    let mut factor = (0.7 * length / reach).min(1.0);
+    if reach < LEAST_STEP {
+        return 0.0;
+    }
+    let mut factor = (0.7 / reach).min(1.0);
     for _ in 0..6 {
-        let to = [at[0] + factor * step[0], at[1] + factor * step[1]];
-        let (value, least) = star.energy(to, phase);
-        if value < local.value && (least > 0.0 || local.least <= 0.0) {
-            kernel.nodes[node as usize] = to;
-            return factor * reach / length;
+        let by = step.map(|it| factor * it);
+        let (value, least) = star.energy(by.map(|it| it as f32), phase);
+        if value < local.value && (least > UPRIGHT || local.least <= UPRIGHT) {
+            let at = kernel.nodes[node as usize];
+            kernel.nodes[node as usize] = [at[0] + by[0] / per_m, at[1] + by[1] / per_m];
+            return (factor * reach) as f32;
         }
         factor *= 0.4;
     }

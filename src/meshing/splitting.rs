@@ -14,6 +14,7 @@ use std::f64::consts::PI;
 use std::f64::consts::TAU;
 
 use crate::geometry::point::Xy;
+use crate::geometry::quad::cross;
 use crate::geometry::quad::distance;
 use crate::meshing::contour::Contour;
 use crate::meshing::patterns;
@@ -142,13 +143,27 @@ fn all(contour: &Contour, size_m: f64) -> BinaryHeap<Candidate> {
 /// if the line does not leave both ends into the area.
 fn angle_error(contour: &Contour, from: usize, to: usize) -> Option<f64> {
     let (a, b) = (contour.at[from], contour.at[to]);
-    if a == b {
+    if a == b || looks_out(contour, from, b) || looks_out(contour, to, a) {
         return None;
     }
     let direction = (b[1] - a[1]).atan2(b[0] - a[0]);
     let there = end_error(contour.opening(from, direction), contour.angle[from])?;
     let back = end_error(contour.opening(to, direction + PI), contour.angle[to])?;
     Some(there + back)
+}
+
+/// True if the line from `entry` to `p` leaves the area at once: without an arc tangent, what the
+/// openings would say. Near the sides, where rounding could matter, both refuse.
+fn looks_out(contour: &Contour, entry: usize, p: Xy) -> bool {
+    let n = contour.len();
+    let at = contour.at[entry];
+    let after = contour.at[if entry + 1 == n { 0 } else { entry + 1 }];
+    let before = contour.at[if entry == 0 { n - 1 } else { entry - 1 }];
+    let (right_of_next, left_of_last) = (cross(at, after, p) < 0.0, cross(at, before, p) > 0.0);
+    match contour.angle[entry] > PI {
+        true => right_of_next && left_of_last,
+        false => right_of_next || left_of_last,
+    }
 }
 
 /// The error that a line adds which splits `angle` at `opening` from its first side.
@@ -224,13 +239,15 @@ pub(crate) fn lay_line(
     let [a, b] = ends.map(|node| sheet.nodes[node as usize]);
     let length = distance(a, b);
     let steps = 8 * count;
-    let mut wished = vec![0.0];
+    let mut wished = Vec::with_capacity(steps + 1);
+    wished.push(0.0);
     for step in 0..steps {
         let along = (step as f64 + 0.5) / steps as f64 * length;
         let edges = 1.0 / wished_m(along, length, ends_m, size_m);
         wished.push(wished[step] + edges);
     }
-    let mut line = vec![ends[0]];
+    let mut line = Vec::with_capacity(count + 1);
+    line.push(ends[0]);
     for edge in 1..count {
         let sum = wished[steps] * edge as f64 / count as f64;
         let step = wished.partition_point(|&w| w < sum).max(1);

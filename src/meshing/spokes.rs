@@ -41,9 +41,12 @@ pub(crate) fn signed_spokes(counts: &[usize]) -> Option<[i64; 6]> {
     let mut spokes = [0; 6];
     for i in 0..n {
         let mut twice = 0;
+        let mut at = i + 1;
         for k in 0..terms {
-            let count = counts[(i + 2 * k + 1) % n] as i64;
+            at -= if at >= n { n } else { 0 };
+            let count = counts[at] as i64;
             twice += if k % 2 == 0 { count } else { -count };
+            at += 2;
         }
         if twice % 2 != 0 {
             return None;

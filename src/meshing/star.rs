@@ -11,8 +11,11 @@
 //!
 //! A node v takes part in three corners of each of its quads: its own, the next and the last. All
 //! three are one formula, as d is twice the area of a triangle v x y in each (*wedge*), and only
-//! which edges move with v differs. Wedges are computed [`LANES`] at a time: half of the finish is
-//! spent here.
+//! which edges move with v differs. [`LANES`] quads are computed side by side: a third of the
+//! meshing is spent here.
+//!
+//! Places are relative to the node, in its wished lengths, so f32 is exact enough: where it rounds
+//! (1e-7), the shortest step that `smooth` takes (1e-3) still lowers the energy by some 1e-5.
 
 use crate::geometry::point::Xy;
 use crate::meshing::kernel::Kernel;
@@ -21,169 +24,239 @@ use crate::meshing::kernel::before;
 use crate::meshing::triangulate::NONE;
 
 /// Weight of size against shape.
-const SIZE: f64 = 0.35;
+const SIZE: f32 = 0.35;
 
-/// Wedges computed side by side; plain arrays that the compiler turns into vector instructions.
+/// Quads computed side by side; plain arrays that the compiler turns into vector instructions. Most
+/// nodes have four.
 const LANES: usize = 4;
 
-type Lanes = [f64; LANES];
+type Lanes = [f32; LANES];
+
+/// A place relative to the node, in wished lengths around it.
+type Place = [f32; 2];
 
 /// How far corners may be inverted before the barrier steepens, and which power of f is summed: 1
 /// lets a tangle open quickly, 2 then serves the worst corners first.
 #[derive(Clone, Copy)]
 pub(crate) struct Phase {
-    pub epsilon: f64,
+    pub epsilon: f32,
     pub squared: bool,
 }
 
 /// What the energy around one node depends on. Reused from node to node.
 #[derive(Default)]
 pub(crate) struct Star {
-    batches: Vec<Wedges>,
-    /// Number of wedges in use.
+    batches: Vec<Quads>,
+    /// Number of quads in use.
     count: usize,
 }
 
-/// Some wedges v x y, v being the node: with s the scale of the corner,
-/// d = s (x - v) x (y - v) and |e1|^2 + |e2|^2 = s (pull_x |x - v|^2 + pull_y |y - v|^2 + rest).
+/// Some quads v a b c, v being the node: wedges v a c, v a b and v b c.
 #[derive(Clone, Copy, Default)]
-struct Wedges {
-    x: [Lanes; 2],
-    y: [Lanes; 2],
-    scale: Lanes,
-    pull_x: Lanes,
-    pull_y: Lanes,
-    rest: Lanes,
+struct Quads {
+    a: [Lanes; 2],
+    b: [Lanes; 2],
+    c: [Lanes; 2],
+    /// Scales of the corners at a and c; that of v is 1.
+    at_a: Lanes,
+    at_c: Lanes,
+    /// |a - b|^2 and |b - c|^2.
+    ab: Lanes,
+    bc: Lanes,
     /// 1, or 0 for a lane that only fills the batch.
     weight: Lanes,
 }
 
+/// Some wedges v x y: with s the scale of the corner, d = s (x - v) x (y - v), and |e1|^2 + |e2|^2
+/// is s times `rest` and what moves of |x - v|^2 and |y - v|^2.
+struct Wedges<'a> {
+    x: &'a [Lanes; 2],
+    y: &'a [Lanes; 2],
+    scale: &'a Lanes,
+    rest: &'a Lanes,
+    weight: &'a Lanes,
+}
+
 /// Value, gradient and Hessian (xx, xy, yy) of the energy around a node.
 pub(crate) struct Expansion {
-    pub value: f64,
+    pub value: f32,
     /// The least d.
-    pub least: f64,
-    pub gradient: Xy,
-    pub hessian: [f64; 3],
+    pub least: f32,
+    pub gradient: [f32; 2],
+    pub hessian: [f32; 3],
 }
 
 impl Star {
-    /// Collects the wedges of `node`.
-    pub fn gather(&mut self, kernel: &Kernel, node: u32) {
+    /// Collects the quads of `node`, around which the wished length is 1 / `per_m`.
+    pub fn gather(&mut self, kernel: &Kernel, node: u32, per_m: f64) {
         self.count = 0;
-        let scale = kernel.scale[node as usize];
+        let at = kernel.nodes[node as usize];
+        let unit = 1.0 / kernel.scale[node as usize];
+        let place = |node: u32| {
+            let p = kernel.nodes[node as usize];
+            [
+                ((p[0] - at[0]) * per_m) as f32,
+                ((p[1] - at[1]) * per_m) as f32,
+            ]
+        };
         let first = kernel.spoke[node as usize];
+        if first == NONE {
+            return;
+        }
         let mut side = first;
-        while side != NONE {
+        let (mut next, mut a) = (kernel.end(side), place(kernel.end(side)));
+        let mut at_a = (kernel.scale[next as usize] * unit) as f32;
+        loop {
             let incoming = before(side);
-            let [next, far, last] = [
-                kernel.end(side),
-                kernel.end(after(side)),
-                kernel.start(incoming),
-            ];
-            let [a, b, c] = [next, far, last].map(|node| kernel.nodes[node as usize]);
-            self.push(a, c, scale, [1.0, 1.0, 0.0]);
-            self.push(a, b, kernel.scale[next as usize], [1.0, 0.0, square(a, b)]);
-            self.push(b, c, kernel.scale[last as usize], [0.0, 1.0, square(b, c)]);
+            next = kernel.start(incoming);
+            let (b, c) = (place(kernel.end(after(side))), place(next));
+            let at_c = (kernel.scale[next as usize] * unit) as f32;
+            self.push([a, b, c], [at_a, at_c]);
             side = kernel.twin(incoming);
-            if side == first {
+            if side == first || side == NONE {
                 break;
             }
+            (a, at_a) = (c, at_c);
         }
-        // A copy of a true wedge is harmless where the least d is sought.
-        for k in self.count..self.count.next_multiple_of(LANES) {
-            let (batch, lane) = (&mut self.batches[k / LANES], k % LANES);
-            for axis in 0..2 {
-                batch.x[axis][lane] = batch.x[axis][0];
-                batch.y[axis][lane] = batch.y[axis][0];
-            }
-            batch.scale[lane] = batch.scale[0];
-            batch.weight[lane] = 0.0;
-        }
+        self.fill_up();
     }
 
-    fn push(&mut self, x: Xy, y: Xy, scale: f64, [pull_x, pull_y, rest]: [f64; 3]) {
+    fn push(&mut self, [a, b, c]: [Place; 3], [at_a, at_c]: [f32; 2]) {
         let (batch, lane) = (self.count / LANES, self.count % LANES);
         if batch == self.batches.len() {
-            self.batches.push(Wedges::default());
+            self.batches.push(Quads::default());
         }
-        let wedges = &mut self.batches[batch];
+        let quads = &mut self.batches[batch];
         for axis in 0..2 {
-            wedges.x[axis][lane] = x[axis];
-            wedges.y[axis][lane] = y[axis];
+            quads.a[axis][lane] = a[axis];
+            quads.b[axis][lane] = b[axis];
+            quads.c[axis][lane] = c[axis];
         }
-        wedges.scale[lane] = scale;
-        wedges.pull_x[lane] = pull_x;
-        wedges.pull_y[lane] = pull_y;
-        wedges.rest[lane] = rest;
-        wedges.weight[lane] = 1.0;
+        quads.at_a[lane] = at_a;
+        quads.at_c[lane] = at_c;
+        quads.ab[lane] = square(a, b);
+        quads.bc[lane] = square(b, c);
+        quads.weight[lane] = 1.0;
         self.count += 1;
     }
 
-    fn used(&self) -> &[Wedges] {
+    /// A copy of a true quad is harmless where the least d is sought.
+    fn fill_up(&mut self) {
+        for k in self.count..self.count.next_multiple_of(LANES) {
+            let (quads, lane) = (&mut self.batches[k / LANES], k % LANES);
+            for axis in 0..2 {
+                quads.a[axis][lane] = quads.a[axis][0];
+                quads.b[axis][lane] = quads.b[axis][0];
+                quads.c[axis][lane] = quads.c[axis][0];
+            }
+            quads.at_a[lane] = quads.at_a[0];
+            quads.at_c[lane] = quads.at_c[0];
+            quads.ab[lane] = quads.ab[0];
+            quads.bc[lane] = quads.bc[0];
+            quads.weight[lane] = 0.0;
+        }
+    }
+
+    fn used(&self) -> &[Quads] {
         &self.batches[..self.count.div_ceil(LANES)]
     }
 
-    /// The energy and the least d with the node at `at`.
-    pub fn energy(&self, at: Xy, phase: Phase) -> (f64, f64) {
-        let mut sum = [0.0; LANES];
-        let mut least = [f64::INFINITY; LANES];
-        for wedges in self.used() {
-            wedges.energy(at, phase, &mut sum, &mut least);
+    /// The energy and the least d with the node moved to `at`.
+    pub fn energy(&self, at: Place, phase: Phase) -> (f32, f32) {
+        let mut sums = [[0.0; LANES], [f32::INFINITY; LANES]];
+        for quads in self.used() {
+            quads.energy(at, phase, &mut sums);
         }
-        (
-            total(&sum),
-            least.iter().copied().fold(f64::INFINITY, f64::min),
-        )
+        (total(&sums[0]), least_of(&sums[1]))
     }
 
-    /// Value and derivatives with the node at `at`.
-    pub fn expand(&self, at: Xy, phase: Phase) -> Expansion {
-        let mut sums = [[0.0; LANES]; 6];
-        let mut least = [f64::INFINITY; LANES];
-        for wedges in self.used() {
-            wedges.expand(at, phase, &mut sums, &mut least);
+    /// Value and derivatives with the node where it is.
+    pub fn expand(&self, phase: Phase) -> Expansion {
+        let mut sums = [[0.0; LANES]; 7];
+        sums[6] = [f32::INFINITY; LANES];
+        for quads in self.used() {
+            quads.expand(phase, &mut sums);
         }
-        let [value, gx, gy, hxx, hxy, hyy] = sums.map(|lanes| total(&lanes));
+        let [value, gx, gy, hxx, hxy, hyy, _] = sums.map(|lanes| total(&lanes));
         Expansion {
             value,
-            least: least.iter().copied().fold(f64::INFINITY, f64::min),
+            least: least_of(&sums[6]),
             gradient: [gx, gy],
             hessian: [hxx, hxy, hyy],
         }
     }
 }
 
-impl Wedges {
+impl Quads {
+    /// Adds the value to `sums`, lane by lane, and lowers the least d there. Not inlined, as the
+    /// compiler finds vectors by what is stored in memory.
+    #[inline(never)]
+    fn energy(&self, at: Place, phase: Phase, sums: &mut [Lanes; 2]) {
+        let [own, next, last] = self.wedges();
+        own.energy::<true, true>(at, phase, sums);
+        next.energy::<true, false>(at, phase, sums);
+        last.energy::<false, true>(at, phase, sums);
+    }
+
+    /// The same with gradient (2) and Hessian (3) before the least d.
+    #[inline(never)]
+    fn expand(&self, phase: Phase, sums: &mut [Lanes; 7]) {
+        let [own, next, last] = self.wedges();
+        own.expand::<true, true>(phase, sums);
+        next.expand::<true, false>(phase, sums);
+        last.expand::<false, true>(phase, sums);
+    }
+
     #[inline(always)]
-    fn energy(&self, at: Xy, phase: Phase, sum: &mut Lanes, least: &mut Lanes) {
+    fn wedges(&self) -> [Wedges<'_>; 3] {
+        let wedges = |x, y, scale, rest| Wedges {
+            x,
+            y,
+            scale,
+            rest,
+            weight: &self.weight,
+        };
+        [
+            wedges(&self.a, &self.c, &[1.0; LANES], &[0.0; LANES]),
+            wedges(&self.a, &self.b, &self.at_a, &self.ab),
+            wedges(&self.b, &self.c, &self.at_c, &self.bc),
+        ]
+    }
+}
+
+impl Wedges<'_> {
+    /// See [`Quads::energy`]. `X` and `Y`: which edges move with the node.
+    #[inline(always)]
+    fn energy<const X: bool, const Y: bool>(&self, at: Place, phase: Phase, sums: &mut [Lanes; 2]) {
         let narrow = phase.epsilon * phase.epsilon;
         let power = if phase.squared { 1.0 } else { 0.0 };
         for k in 0..LANES {
             let (ax, ay) = (self.x[0][k] - at[0], self.x[1][k] - at[1]);
             let (bx, by) = (self.y[0][k] - at[0], self.y[1][k] - at[1]);
             let d = self.scale[k] * (ax * by - ay * bx);
-            let squares = self.pull_x[k] * (ax * ax + ay * ay)
-                + self.pull_y[k] * (bx * bx + by * by)
-                + self.rest[k];
+            let mut squares = self.rest[k];
+            squares += if X { ax * ax + ay * ay } else { 0.0 };
+            squares += if Y { bx * bx + by * by } else { 0.0 };
             let n = 0.5 * self.scale[k] * squares + 0.5 * SIZE * (1.0 + d * d);
             let f = n * inverse_chi(d, (narrow + d * d).sqrt(), narrow);
-            sum[k] += self.weight[k] * f * (1.0 - power + power * f);
-            least[k] = if d < least[k] { d } else { least[k] };
+            sums[0][k] += self.weight[k] * f * (1.0 - power + power * f);
+            sums[1][k] = if d < sums[1][k] { d } else { sums[1][k] };
         }
     }
 
-    /// Adds value, gradient (2) and Hessian (3) to `sums`, lane by lane.
+    /// See [`Quads::expand`].
     #[inline(always)]
-    fn expand(&self, at: Xy, phase: Phase, sums: &mut [Lanes; 6], least: &mut Lanes) {
+    fn expand<const X: bool, const Y: bool>(&self, phase: Phase, sums: &mut [Lanes; 7]) {
         let narrow = phase.epsilon * phase.epsilon;
         let power = if phase.squared { 1.0 } else { 0.0 };
         for k in 0..LANES {
-            let (ax, ay) = (self.x[0][k] - at[0], self.x[1][k] - at[1]);
-            let (bx, by) = (self.y[0][k] - at[0], self.y[1][k] - at[1]);
-            let (s, px, py) = (self.scale[k], self.pull_x[k], self.pull_y[k]);
+            let (ax, ay) = (self.x[0][k], self.x[1][k]);
+            let (bx, by) = (self.y[0][k], self.y[1][k]);
+            let s = self.scale[k];
             let d = s * (ax * by - ay * bx);
-            let squares = px * (ax * ax + ay * ay) + py * (bx * bx + by * by) + self.rest[k];
+            let mut squares = self.rest[k];
+            squares += if X { ax * ax + ay * ay } else { 0.0 };
+            squares += if Y { bx * bx + by * by } else { 0.0 };
             let n = 0.5 * s * squares + 0.5 * SIZE * (1.0 + d * d);
             let root = (narrow + d * d).sqrt();
             let inverse = inverse_chi(d, root, narrow);
@@ -193,10 +266,15 @@ impl Wedges {
             let bend = 0.5 * narrow * slope * slope * slope * inverse;
             // Gradients of d, n and f; curvature of n.
             let (gx, gy) = (s * (ay - by), s * (bx - ax));
-            let nx = SIZE * d * gx - s * (px * ax + py * bx);
-            let ny = SIZE * d * gy - s * (px * ay + py * by);
+            let (pull_x, pull_y) = match (X, Y) {
+                (true, true) => (ax + bx, ay + by),
+                (true, false) => (ax, ay),
+                _ => (bx, by),
+            };
+            let nx = SIZE * d * gx - s * pull_x;
+            let ny = SIZE * d * gy - s * pull_y;
             let (fx, fy) = (inverse * nx - f * slope * gx, inverse * ny - f * slope * gy);
-            let curve = s * (px + py) * inverse;
+            let curve = if X && Y { 2.0 } else { 1.0 } * s * inverse;
             let gg = SIZE * inverse + f * (2.0 * slope * slope - bend);
             let mixed = slope * inverse;
             let hxx = curve + gg * gx * gx - 2.0 * mixed * nx * gx;
@@ -212,25 +290,29 @@ impl Wedges {
             sums[3][k] += outer * hxx + cross * fx * fx;
             sums[4][k] += outer * hxy + cross * fx * fy;
             sums[5][k] += outer * hyy + cross * fy * fy;
-            least[k] = if d < least[k] { d } else { least[k] };
+            sums[6][k] = if d < sums[6][k] { d } else { sums[6][k] };
         }
     }
 }
 
 /// 1 / chi(d), given root = sqrt(eps^2 + d^2) and eps^2; without cancellation for d far below 0.
 #[inline(always)]
-fn inverse_chi(d: f64, root: f64, narrow: f64) -> f64 {
+fn inverse_chi(d: f32, root: f32, narrow: f32) -> f32 {
     let sum = root + d.abs();
     let up = if d > 0.0 { 2.0 } else { 2.0 * sum };
     let down = if d > 0.0 { sum } else { narrow };
     up / down
 }
 
-fn total(lanes: &Lanes) -> f64 {
+fn total(lanes: &Lanes) -> f32 {
     (lanes[0] + lanes[1]) + (lanes[2] + lanes[3])
 }
 
-fn square(a: Xy, b: Xy) -> f64 {
+fn least_of(lanes: &Lanes) -> f32 {
+    lanes.iter().copied().fold(f32::INFINITY, f32::min)
+}
+
+fn square(a: Place, b: Place) -> f32 {
     let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
     dx * dx + dy * dy
 }
@@ -239,13 +321,13 @@ impl Expansion {
     /// Minus the gradient over the Hessian, whose smaller eigenvalue is first raised to a
     /// hundredth of the larger one, so that the step goes down.
     pub fn newton_step(&self) -> Xy {
-        let [a, b, c] = self.hessian;
+        let [a, b, c] = self.hessian.map(f64::from);
         let middle = 0.5 * (a + c);
         let radius = (0.25 * (a - c) * (a - c) + b * b).sqrt();
         let lift = (0.01 * (middle.abs() + radius) - (middle - radius)).max(0.0);
         let (a, c) = (a + lift, c + lift);
         let determinant = a * c - b * b;
-        let [x, y] = self.gradient;
+        let [x, y] = self.gradient.map(f64::from);
         if determinant > 0.0 {
             [(b * y - c * x) / determinant, (b * x - a * y) / determinant]
         } else {
@@ -258,30 +340,51 @@ impl Expansion {
 mod tests {
     use super::*;
 
+    const CORNERS: [[Place; 3]; 3] = [
+        [[1.0, 0.1], [0.9, 1.2], [-0.1, 1.0]],
+        [[-0.1, 1.0], [-1.0, 0.9], [-0.8, -0.7]],
+        [[-0.8, -0.7], [0.2, -0.1], [1.0, 0.1]],
+    ];
+    /// Scales of the corners after and before the node's own.
+    const SCALES: [f32; 2] = [1.1, 0.8];
+
     /// A star of three quads around a node near the origin, one of them inverted.
     fn star() -> Star {
         let mut star = Star::default();
-        let corners = [
-            [[1.0, 0.1], [0.9, 1.2], [-0.1, 1.0]],
-            [[-0.1, 1.0], [-1.0, 0.9], [-0.8, -0.7]],
-            [[-0.8, -0.7], [0.2, -0.1], [1.0, 0.1]],
-        ];
-        for [a, b, c] in corners {
-            star.push(a, c, 0.9, [1.0, 1.0, 0.0]);
-            star.push(a, b, 1.1, [1.0, 0.0, square(a, b)]);
-            star.push(b, c, 0.8, [0.0, 1.0, square(b, c)]);
+        for corners in CORNERS {
+            star.push(corners, SCALES);
         }
+        star.fill_up();
         star
+    }
+
+    /// The slow twin: the energy by its formula, in double precision.
+    fn energy(v: Xy, phase: Phase) -> f64 {
+        let corner = |at: Xy, next: Xy, last: Xy, scale: f32| {
+            let edge = |p: Xy| [p[0] - at[0], p[1] - at[1]].map(|it| it * f64::from(scale).sqrt());
+            let (a, b) = (edge(next), edge(last));
+            let d = a[0] * b[1] - a[1] * b[0];
+            let squares = a[0] * a[0] + a[1] * a[1] + b[0] * b[0] + b[1] * b[1];
+            let epsilon = f64::from(phase.epsilon);
+            let chi = 0.5 * (d + (epsilon * epsilon + d * d).sqrt());
+            let f = 0.5 * (squares + f64::from(SIZE) * (1.0 + d * d)) / chi;
+            if phase.squared { f * f } else { f }
+        };
+        let corners = CORNERS.map(|it| it.map(|place| place.map(f64::from)));
+        let quad = |[a, b, c]: [Xy; 3]| {
+            corner(v, a, c, 1.0) + corner(a, b, v, SCALES[0]) + corner(c, v, b, SCALES[1])
+        };
+        corners.into_iter().map(quad).sum()
     }
 
     #[test]
     fn derivatives_agree_with_differences() {
         let star = star();
-        let (at, step) = ([0.05, -0.02], 1e-4);
+        let step = 1e-4;
         for (epsilon, squared) in [(0.3, false), (0.05, true)] {
             let phase = Phase { epsilon, squared };
-            let f = |x: f64, y: f64| star.energy([at[0] + x * step, at[1] + y * step], phase).0;
-            let expansion = star.expand(at, phase);
+            let f = |x: f64, y: f64| energy([x * step, y * step], phase);
+            let expansion = star.expand(phase);
             let slope = [f(1.0, 0.0) - f(-1.0, 0.0), f(0.0, 1.0) - f(0.0, -1.0)];
             let middle = 2.0 * f(0.0, 0.0);
             let bend = [
@@ -289,7 +392,11 @@ mod tests {
                 0.25 * (f(1.0, 1.0) + f(-1.0, -1.0) - f(1.0, -1.0) - f(-1.0, 1.0)),
                 f(0.0, 1.0) + f(0.0, -1.0) - middle,
             ];
-            let close = |a: f64, b: f64| (a - b).abs() < 1e-3 * (1.0 + a.abs());
+            let close = |a: f32, b: f64| (f64::from(a) - b).abs() < 1e-3 * (1.0 + b.abs());
+            assert!(close(expansion.value, 0.5 * middle));
+            let elsewhere = [0.05_f32, -0.02];
+            let there = energy(elsewhere.map(f64::from), phase);
+            assert!(close(star.energy(elsewhere, phase).0, there));
             for k in 0..2 {
                 assert!(close(expansion.gradient[k], slope[k] / (2.0 * step)));
             }

@@ -272,7 +272,7 @@ impl Growth {
 
     /// What has been taken in, if its outline is one simple loop.
     fn window(&self, kernel: &Kernel) -> Option<Window> {
-        let mut edges: Vec<(u32, u32)> = Vec::new();
+        let mut edges: Vec<(u32, u32)> = Vec::with_capacity(2 * self.quads.len() + 2);
         for side in self.quads.iter().flat_map(|&quad| 4 * quad..4 * quad + 4) {
             let twin = kernel.twin(side);
             if twin == NONE || !self.taken[quad_of(twin) as usize] {
@@ -280,7 +280,8 @@ impl Growth {
             }
         }
         edges.sort_unstable();
-        let mut outline = vec![edges[0].0];
+        let mut outline = Vec::with_capacity(edges.len());
+        outline.push(edges[0].0);
         let mut node = edges[0].1;
         while node != outline[0] {
             if outline.len() == edges.len() {
