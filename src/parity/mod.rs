@@ -58,7 +58,8 @@
 //! A *block* is a sub-domain with three to six sides, each of one curve or several. One pattern can
 //! mesh it (a grid, or a star with one irregular node) if the totals N of its sides satisfy rules
 //! `a_r N + b_r <= 0` ([`rules`](crate::intervals::goals::rules)), and, with four or six sides, if
-//! every other side has an even total. With a price `p` (`Options::worth`) for each unit of the
+//! every other side has an even total. (A sub-domain of any shape whose walks should close on a lattice
+//! is a block of four sides, too: the directions there.) With a price `p` (`Options::worth`) for each unit of the
 //! largest excess, the programme becomes
 //!
 //! ```text
