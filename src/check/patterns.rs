@@ -66,33 +66,28 @@ pub(crate) fn check(mesh: &Mesh) -> Promise {
     promise
 }
 
-/// True if the sides of a block are the one walk of its sub-domain, in order.
+/// True if the sides of a block are the curves around its sub-domain, each once and without free
+/// lines: of one walk in order, or by direction if there are four.
 fn is_around(frame: &FrameView, given: &PatternsView, block: usize) -> bool {
-    let subdomain = given.block_subdomain[block] as usize;
-    let (first, end) = (
-        frame.subdomain_start[subdomain],
-        frame.subdomain_start[subdomain + 1],
-    );
-    if end - first != 1 {
-        return false;
-    }
-    let rows =
-        frame.walk_start[first as usize] as usize..frame.walk_start[first as usize + 1] as usize;
-    let mut walk: Vec<u32> = frame.walk_halves[rows]
-        .iter()
+    let subdomain = given.block_subdomain[block];
+    let [first, end] = [0, 1].map(|k| frame.subdomain_start[subdomain as usize + k] as usize);
+    let rows = frame.walk_start[first] as usize..frame.walk_start[end] as usize;
+    let mut around: Vec<u32> = (frame.walk_halves[rows].iter())
         .map(|half| half >> 1)
+        .filter(|&curve| frame.left[curve as usize] != frame.right[curve as usize])
         .collect();
     let sides = given.block_start[block] as usize..given.block_start[block + 1] as usize;
     let (from, to) = (given.side_start[sides.start], given.side_start[sides.end]);
-    let curves = &given.side_curves[from as usize..to as usize];
-    match curves
-        .first()
-        .and_then(|first| walk.iter().position(|it| it == first))
+    let mut curves = given.side_curves[from as usize..to as usize].to_vec();
+    if sides.len() == 4 {
+        around.sort_unstable();
+        curves.sort_unstable();
+    } else if let Some(by) =
+        (curves.first()).and_then(|first| around.iter().position(|it| it == first))
     {
-        Some(by) => walk.rotate_left(by),
-        None => return false,
+        around.rotate_left(by);
     }
-    walk == curves
+    around == curves
 }
 
 /// What parity sees of the mesh; `None` if no patterns were wished for.

@@ -11,4 +11,5 @@ pub mod grid;
 pub mod point;
 pub mod predicates;
 pub mod quad;
+pub mod turns;
 pub mod window;

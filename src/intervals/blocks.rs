@@ -5,6 +5,7 @@ use crate::intervals::goals::Block;
 use crate::intervals::goals::Goals;
 use crate::intervals::goals::rules;
 use crate::intervals::sides::Walk;
+use crate::intervals::submaps;
 use crate::noding::arrangement::Arrangement;
 use crate::partition::subdomains::Partition;
 
@@ -23,7 +24,8 @@ const IRREGULAR_DEG2: f64 = 820.0;
 /// by any method: to fit them changes no quality figure of any case and costs as much as all others.
 const QUADS_MAX: f64 = 256.0;
 
-/// All sub-domains of three to six sides whose wishes nearly fit, in the order of their ids.
+/// All sub-domains of three to six sides whose wishes nearly fit, and others that nearly close
+/// ([`submaps`]), in the order of their ids.
 pub fn blocks(
     goals: &Goals,
     arrangement: &Arrangement,
@@ -31,19 +33,22 @@ pub fn blocks(
     options: &Options,
 ) -> Vec<Block> {
     (0..partition.subdomains.len() as u32)
-        .filter_map(|id| block(arrangement, partition, id))
-        .filter(|block| is_promising(goals, block, options.block_ratio))
+        .filter_map(|id| {
+            block(arrangement, partition, id)
+                .filter(|block| is_promising(goals, block, options.block_ratio, QUADS_MAX))
+                .or_else(|| submaps::block(goals, arrangement, partition, id))
+        })
         .collect()
 }
 
 /// Small, and the wishes are off by at most an interval, or by the ratio: to fit others would spoil
 /// the sizes of the neighbours for a patch that is stretched anyway.
-fn is_promising(goals: &Goals, block: &Block, ratio: f64) -> bool {
+pub fn is_promising(goals: &Goals, block: &Block, ratio: f64, quads_max: f64) -> bool {
     let wish = |curve: usize| goals.goal[curve].max(f64::from(goals.lower[curve]));
     let wishes = block.totals(wish);
     let sides = &wishes[..block.sides.len()];
     let least = sides.iter().copied().fold(f64::INFINITY, f64::min);
-    if (sides.iter().sum::<f64>() / 4.0).powi(2) > QUADS_MAX {
+    if (sides.iter().sum::<f64>() / 4.0).powi(2) > quads_max {
         return false;
     }
     let enough = if sides.len() == 4 { 0.0 } else { 1.5 };

@@ -14,16 +14,18 @@ pub struct Goals {
     pub upper: Vec<u32>,
     /// Weight of the curve's deviation; 1 for a straight curve that is not shorter than the size.
     pub weight: Vec<f64>,
-    /// Sub-domains with three to six sides, by id: they can be mapped if their counts fit.
+    /// Sub-domains that can be mapped if their counts fit, by id.
     pub blocks: Vec<Block>,
 }
 
-/// A sub-domain with one walk, three to six corners and no reflex one.
+/// A sub-domain with one walk, three to six corners and no reflex one; or one of any shape whose walks
+/// should close on a lattice: its four sides are then the directions there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
     /// The sub-domain.
     pub subdomain: SubdomainId,
-    /// The curves of each side, in order around; each lies on it as a whole. None occurs twice.
+    /// The curves of each side, in order around, or of each direction, in order of number; each lies on it
+    /// as a whole. None occurs twice, free lines do not occur.
     pub sides: Vec<Vec<u32>>,
 }
 

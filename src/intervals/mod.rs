@@ -25,7 +25,8 @@
 //!    sufficient, not necessary: it may forbid a split that another share of the side would allow.
 //! 3. `rows`: what kinds of lines wish in narrow places becomes a lower bound of rungs.
 //! 4. `blocks`: the sub-domains with three to six sides, whose counts `parity` wishes to fit one
-//!    pattern, because mapped patches are the best ones. Corners as mapping chooses them.
+//!    pattern, because mapped patches are the best ones. Corners as mapping chooses them. `submaps`: those
+//!    with re-entrant corners, houses and free lines, whose walks nearly close on a lattice.
 //! 5. Costs are those of [`Goals::cost`]: convex, relative, zero at the goal. `apportion` says what
 //!    one more interval costs on the edge of a curve that can best take it: the curve's weight.
 //!    So the odd interval that parity asks for goes to long edges, never to one below the size if
@@ -52,6 +53,7 @@ pub mod goals;
 mod minima;
 mod rows;
 mod sides;
+mod submaps;
 pub mod wish;
 
 /// How goals and bounds are made.

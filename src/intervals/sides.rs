@@ -52,6 +52,24 @@ impl Walk {
         (ux * vy - uy * vx).atan2(ux * vx + uy * vy).to_degrees()
     }
 
+    /// Change of direction where each edge starts, degrees, as [`turn_deg`](Walk::turn_deg); at the end
+    /// of a free line, where the walk goes back along the same edge, -180.
+    pub fn turns_deg(&self) -> Vec<f64> {
+        let n = self.point.len();
+        let is_end = |k: usize| self.point[(k + n - 1) % n] == self.point[(k + 1) % n];
+        let turn = |k: usize| if is_end(k) { -180.0 } else { self.turn_deg(k) };
+        (0..n).map(turn).collect()
+    }
+
+    /// The edges, each with its curve and its step, grid units.
+    pub fn edges(&self) -> impl Iterator<Item = (u32, [f64; 2])> {
+        let n = self.point.len();
+        (0..n).map(move |k| {
+            let (a, b) = (self.point[k], self.point[(k + 1) % n]);
+            (self.curve[k], [f64::from(b.x - a.x), f64::from(b.y - a.y)])
+        })
+    }
+
     /// The edges whose turn is such, in order.
     pub fn entries(&self, is_such: impl Fn(f64) -> bool) -> Vec<usize> {
         (0..self.point.len())

@@ -15,6 +15,16 @@ use crate::meshing::visits::Visits;
 /// cells, and the other methods would be slower and worse there.
 const LARGE_QUADS: usize = 2000;
 
+/// A sheared lattice without irregular nodes ranks high, but looping may rank higher: a mapped patch
+/// with a poorer mean shape has to compete with it. Measured on a city of 10 000 segments: .90 for .92
+/// costs .0011 of the mean shape and .003 of the 5 % quantile, and saves a sixth of the time.
+const FAIR: f64 = 0.92;
+/// The same in sub-domains of more than 700 quads, where the strip's mean is .98.
+const FAIR_LARGE: f64 = 0.975;
+/// Larger sub-domains are not mapped: all their quads would have to be smoothed, where the strip leaves
+/// most of them as they are.
+const MAPPED_QUADS: f64 = 4000.0;
+
 /// So many plans of the catalogue are made. Measured on three cities: 5, 8 or 20 give the same 1 %
 /// quantile of shapes.
 const PLANS: usize = 4;
@@ -25,6 +35,8 @@ pub(crate) struct Contest<'a> {
     loops: &'a Loops,
     /// The rank that ends it.
     enough: f64,
+    /// The mean shape without which what is mapped does not.
+    fair: f64,
     /// Who leads.
     pub best: Option<(Patch, Score)>,
 }
@@ -37,26 +49,32 @@ impl<'a> Contest<'a> {
         options: &Options,
         draft: impl Fn(Method) -> Option<Draft>,
     ) -> Contest<'a> {
-        let (order, most) = order(visits.area_m2() / (loops.size_m * loops.size_m));
+        let quads = visits.area_m2() / (loops.size_m * loops.size_m);
+        let (order, most) = order(quads);
+        let is_small = catalogue::holds(visits) && options.methods.contains(&Method::Mapping);
         let mut contest = Contest {
             visits,
             loops,
             enough: options.good_enough.min(most),
+            fair: match is_small {
+                true => 0.0,
+                false if quads > 700.0 => FAIR_LARGE,
+                false => FAIR,
+            },
             best: None,
         };
-        let is_small = catalogue::holds(visits) && options.methods.contains(&Method::Mapping);
         for method in order.into_iter().filter(|it| options.methods.contains(it)) {
             if let Some(draft) = draft(method) {
                 contest.enter(draft, Effort::Clean);
             }
-            if method == Method::Mapping && is_small && !contest.is_over() {
+            if method == Method::Mapping && is_small && !contest.is_over(method) {
                 for draft in catalogue::drafts(visits, PLANS) {
                     contest.enter(draft, Effort::Smooth);
                 }
             }
             // What catalogue and looping do not find in a small loop, the others do not either.
             let enough_tried = is_small && method == Method::Looping && contest.best.is_some();
-            if contest.is_over() || enough_tried {
+            if contest.is_over(method) || enough_tried {
                 break;
             }
         }
@@ -75,9 +93,11 @@ impl<'a> Contest<'a> {
         }
     }
 
-    fn is_over(&self) -> bool {
-        let over = |(patch, score): &(Patch, Score)| {
-            score.rank() >= self.enough || patch.quads.len() > LARGE_QUADS
+    /// True if nobody else need try after `method`.
+    fn is_over(&self, method: Method) -> bool {
+        let over = |(patch, score): &(Patch, Score)| match method {
+            Method::Mapping => score.rank() >= self.enough && score.mean >= self.fair,
+            _ => score.rank() >= self.enough || patch.quads.len() > LARGE_QUADS,
         };
         self.best.as_ref().is_some_and(over)
     }
@@ -95,7 +115,9 @@ fn order(quads: f64) -> ([Method; 4], f64) {
     use Method::Looping;
     use Method::Mapping;
     use Method::Strip;
-    if quads > 700.0 {
+    if quads > 700.0 && quads < MAPPED_QUADS {
+        ([Mapping, Strip, Looping, Indirect], 0.7)
+    } else if quads > 700.0 {
         ([Strip, Looping, Indirect, Mapping], 0.7)
     } else if quads > 100.0 {
         ([Mapping, Looping, Strip, Indirect], 0.85)

@@ -21,7 +21,8 @@
 //! and `score` ranks it; an excellent patch ends the `contest` early.
 //!
 //! - `mapping`: one of the `patterns` (grid, stars of 3, 5 and 6 `spokes`, a 3-5 `pair`) over the
-//!   whole of a sub-domain with few sides.
+//!   whole of a sub-domain with few sides; else `submap`: where all walks close on a lattice, its cells,
+//!   without irregular nodes (Whiteley and others 1996).
 //! - `catalogue`: loops of up to twelve nodes that no pattern suits, by the best of all their
 //!   quadrangulations.
 //! - `looping`: `bridges` join all walks to one loop; `splitting` halves it by the best line again
@@ -87,6 +88,7 @@ mod spokes;
 mod star;
 mod strip;
 mod strip_border;
+mod submap;
 mod triangulate;
 mod visits;
 mod windows;
@@ -168,7 +170,7 @@ pub fn mesh(loops: &Loops, options: &Options) -> Result<Meshed, Defect> {
 
 fn draft(method: Method, visits: &Visits, loops: &Loops) -> Option<Draft> {
     match method {
-        Method::Mapping => mapping::mesh(visits, loops),
+        Method::Mapping => mapping::mesh(visits, loops).or_else(|| submap::mesh(visits, loops)),
         Method::Looping => looping::mesh(visits, loops.size_m),
         Method::Strip => strip::mesh(visits, loops),
         Method::Indirect => {

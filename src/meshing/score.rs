@@ -74,6 +74,10 @@ impl Score {
     /// regularity, the time step and the number of quads decide: a wedge can be mapped with good
     /// corners and cells of half the size, but half again as many as wished lose all of the last.
     ///
+    /// An irregular node may cost half of a perfect quad's shape in all. (Measured on a city of 10 000
+    /// segments where lattices without such nodes compete with looping: as much as a whole quad leaves
+    /// .1 % irregular nodes fewer, for .0010 of the mean shape and .002 of the 5 % quantile.)
+    ///
     /// Cells below [`BRISK`] lose more: fewer and larger quads with poorer corners are better then,
     /// as long as no corner is [`POOR`]. (Measured on six cities: the .1 % quantile of the
     /// time-step proxy grows by up to 4 %, and there are up to 1 % fewer quads, for up to .008 of
@@ -86,8 +90,8 @@ impl Score {
         let traded = if self.least < POOR { 0.0 } else { self.size };
         let room = (1.0 - 2.0 * (self.crowding - 1.0)).clamp(0.0, 1.0);
         0.4 * least.min(1.0)
-            + 0.2 * self.mean
-            + 0.2 * (1.0 - self.irregular)
+            + 0.27 * self.mean
+            + 0.13 * (1.0 - self.irregular)
             + 0.1 * self.size
             + 0.1 * room
             - SLOW * (1.0 - traded / BRISK).max(0.0)

@@ -58,9 +58,10 @@
 //! A *block* is a sub-domain with three to six sides, each of one curve or several. One pattern can
 //! mesh it (a grid, or a star with one irregular node) if the totals N of its sides satisfy rules
 //! `a_r N + b_r <= 0` ([`rules`](crate::intervals::goals::rules)), and, with four or six sides, if
-//! every other side has an even total. With a price `p` for each unit of the largest excess
-//! (`Options::worth`, in tiny blocks [more](crate::intervals::goals::Goals::block_weight)), the programme
-//! becomes
+//! every other side has an even total. (A sub-domain of any shape whose walks should close on a lattice
+//! is a block of four sides, too: the directions there.) With a price `p` for each unit of the largest
+//! excess (`Options::worth`, in tiny blocks [more](crate::intervals::goals::Goals::block_weight)), the
+//! programme becomes
 //!
 //! ```text
 //! minimise  sum of cost_c(n_c) + sum over blocks f of

@@ -5,6 +5,7 @@ use polder::geometry::crossing::crossing;
 use polder::geometry::crossing::passes_pixel;
 use polder::geometry::point::LIMIT;
 use polder::geometry::point::Point;
+use polder::geometry::turns::quarter_turns;
 use proptest::prelude::*;
 
 fn point(range: i32) -> impl Strategy<Value = Point> {
@@ -139,4 +140,26 @@ fn crossing_at_the_corners_of_the_grid() {
         crossing(p(-1, -1), p(1, 1), p(-1, 1), p(1, -1)),
         Some(p(0, 0))
     );
+}
+
+#[test]
+fn quarter_turns_sum_to_what_a_lattice_asks() {
+    let quarters = |turns: &[f64]| quarter_turns(turns, 4);
+    assert_eq!(
+        quarters(&[90.0, 85.0, 0.0, 95.0, 90.0]),
+        Some(vec![1, 1, 0, 1, 1])
+    );
+    // An L, and a slit that hangs on the rim.
+    let l = [90.0, 90.0, 90.0, -90.0, 90.0, 90.0];
+    assert_eq!(quarters(&l), Some(vec![1, 1, 1, -1, 1, 1]));
+    let slit = [90.0, 90.0, 90.0, -180.0, 90.0, 90.0, 90.0];
+    assert_eq!(quarters(&slit), Some(vec![1, 1, 1, -2, 1, 1, 1]));
+    // What is nearest to a corner becomes one; a triangle has no fourth.
+    assert_eq!(
+        quarters(&[90.0, 90.0, 100.0, 38.0, 42.0]),
+        Some(vec![1, 1, 1, 0, 1])
+    );
+    assert_eq!(quarters(&[120.0, 120.0, 120.0]), None);
+    assert_eq!(quarters(&[120.0, 120.0, 120.0, 10.0, -10.0]), None);
+    assert_eq!(quarter_turns(&[-90.0; 4], -4), Some(vec![-1; 4]));
 }

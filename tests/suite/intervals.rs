@@ -136,6 +136,48 @@ fn small_squares_keep_one_on_each_side() {
     assert_eq!(goals.lower.iter().sum::<u32>(), 4);
 }
 
+/// An L with a house and a free line: its sides are the directions, all of its curves are on one, and
+/// what goes east is as long as what goes west.
+#[test]
+fn rooms_with_reflex_corners_and_houses_are_blocks_by_direction() {
+    let l = [
+        (0, 0),
+        (100, 0),
+        (100, 50),
+        (60, 50),
+        (60, 100),
+        (0, 100),
+        (0, 0),
+    ];
+    let house = vec![(20, 20), (40, 20), (40, 40), (20, 40), (20, 20)];
+    let free = vec![(70, 50), (70, 30)];
+    let (partition, goals) = planned(&l, &[house, free], [10.0, 10.0]);
+    let room = (partition.subdomains.iter())
+        .position(|it| it.walks.len() == 2)
+        .expect("the room around the house") as u32;
+    let block = (goals.blocks.iter())
+        .find(|block| block.subdomain == room)
+        .expect("it closes");
+    let totals = block.totals(|curve| goals.goal[curve]);
+    assert_eq!(totals[0], totals[2]);
+    assert_eq!(totals[1], totals[3]);
+    assert_eq!(totals.iter().sum::<f64>(), 40.0 + 8.0);
+    let is_free = |&curve: &u32| {
+        let curve = &partition.curves[curve as usize];
+        curve.left == curve.right
+    };
+    assert!(!block.sides.iter().flatten().any(is_free));
+    // By direction, a block's curves may lie anywhere around it, and the count is found all the same.
+    let balance = polder::parity::balance(
+        &partition,
+        &goals,
+        &polder::pipeline::plan::parity_options(1.2),
+    );
+    let counts = balance.expect("even").counts;
+    let totals = block.totals(|curve| f64::from(counts[curve]));
+    assert!(totals[0] == totals[2] && totals[1] == totals[3]);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 

@@ -6,6 +6,8 @@ mod cases;
 mod looping;
 #[path = "meshing_strip.rs"]
 mod strip;
+#[path = "meshing_submap.rs"]
+mod submap;
 
 use polder::meshing::Meshed;
 use polder::meshing::Options;
