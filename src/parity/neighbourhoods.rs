@@ -2,7 +2,6 @@
 //! for, HiGHS solves the sub-domains around exactly while all others stay.
 
 use crate::intervals::goals::Goals;
-use crate::parity::Options;
 use crate::parity::around::Around;
 use crate::parity::draft::Draft;
 use crate::parity::programme::cost_units;
@@ -20,28 +19,28 @@ const SUBDOMAINS: usize = 40;
 /// Branches of HiGHS in each.
 const NODES: i32 = 200;
 
-/// Improves `best` at the worst places, at most `options.neighbourhoods_max`; how many got better.
+/// Improves `best` at the worst places until its total is `enough`, at most at `most` of them; how many
+/// got better.
 pub fn improve(
     partition: &Partition,
     goals: &Goals,
     rules: &Rules,
     best: &mut Draft,
     multipliers: &[i64],
-    options: &Options,
+    most: u32,
+    enough: impl Fn(i64) -> bool,
 ) -> u32 {
     let crosses = |id: usize| partition.curves[id].left != partition.curves[id].right;
     let around = Around::of(partition, crosses);
     let mut done = vec![false; partition.subdomains.len()];
     let mut improved = 0;
-    let losses = losses(goals, rules, best, multipliers);
-    let most = options.neighbourhoods_max as usize;
     let mut solved = 0;
-    for (_, block) in losses {
+    for (_, block) in losses(goals, rules, best, multipliers) {
         let centre = goals.blocks[block as usize].subdomain;
         if done[centre as usize] {
             continue;
         }
-        if solved == most {
+        if solved == most || enough(best.total()) {
             break;
         }
         solved += 1;

@@ -88,17 +88,17 @@ pub fn fit_patterns(
         let proof = climb.solve(proof, &mut made.solved)?;
         best = climb.best;
         made.rounds = climb.rounds;
-        let left = (best.total() - proof.bound) as f64;
-        if left > options.gap_enough * (best.total() - free) as f64 {
-            made.improved = neighbourhoods::improve(
-                partition,
-                goals,
-                &rules,
-                &mut best,
-                &proof.multipliers,
-                options,
-            );
-        }
+        let enough =
+            |total: i64| (total - proof.bound) as f64 <= options.gap_enough * (total - free) as f64;
+        made.improved = neighbourhoods::improve(
+            partition,
+            goals,
+            &rules,
+            &mut best,
+            &proof.multipliers,
+            options.neighbourhoods_max,
+            enough,
+        );
         made.bound = proof.bound as f64 * COST_UNIT;
         made.multipliers = proof.multipliers;
         made.cuts = proof.join.cuts;
