@@ -22,8 +22,9 @@ const FAIR: f64 = 0.92;
 /// The same in sub-domains of more than 700 quads, where the strip's mean is .98.
 const FAIR_LARGE: f64 = 0.975;
 /// Larger sub-domains are not mapped: all their quads would have to be smoothed, where the strip leaves
-/// most of them as they are.
-const MAPPED_QUADS: f64 = 4000.0;
+/// most of them as they are. Measured on a city of 10 000 segments at 3 m: 4000 leaves .03 % irregular
+/// nodes fewer, for .0008 of the mean shape and a tenth of the time.
+const MAPPED_QUADS: f64 = 2000.0;
 
 /// So many plans of the catalogue are made. Measured on three cities: 5, 8 or 20 give the same 1 %
 /// quantile of shapes.

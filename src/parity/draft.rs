@@ -48,8 +48,6 @@ pub struct Draft<'a> {
     rules: &'a Rules,
     places: &'a Places,
     totals: Vec<[i64; 6]>,
-    /// The price of the dearest block, units.
-    worth_most: i64,
     /// What a move must gain for each curve that it changes; 0 unless counts should stay.
     pub hurdle: i64,
     /// The counts.
@@ -76,7 +74,6 @@ impl<'a> Draft<'a> {
             rules,
             places,
             totals,
-            worth_most: rules.worth.iter().copied().max().unwrap_or(0),
             hurdle: 0,
             counts,
         }
@@ -173,14 +170,17 @@ impl<'a> Draft<'a> {
             if total < best {
                 (best, best_len) = (total, row.len());
             }
-            // No block at its end can win back more than what the change takes off its excess.
-            if total - best > by.abs() * self.worth_most {
-                break;
-            }
-            let Some((next, block)) = self.across(curve, from, by, &row) else {
+            let Some(end) = self.places.beside(curve).find(|place| place.0 != from) else {
                 break;
             };
-            (curve, from) = (next, block);
+            // The block at its end cannot win back more than what the change takes off its excess.
+            if total - best > by.abs() * self.rules.worth[end.0 as usize] {
+                break;
+            }
+            let Some(next) = self.across(end, by, &row) else {
+                break;
+            };
+            (curve, from) = (next, end.0);
         }
         for &curve in &row[best_len..] {
             self.change(curve, -by);
@@ -188,9 +188,8 @@ impl<'a> Draft<'a> {
         best_len > 0
     }
 
-    /// The best curve opposite `curve` in the block beyond it, which is the one that is not `from`.
-    fn across(&self, curve: u32, from: u32, by: i64, row: &[u32]) -> Option<(u32, u32)> {
-        let (block, side) = self.places.beside(curve).find(|place| place.0 != from)?;
+    /// The best curve opposite a side of a block.
+    fn across(&self, (block, side): (u32, u8), by: i64, row: &[u32]) -> Option<u32> {
         let sides = &self.goals.blocks[block as usize].sides;
         // In a star, what enters by a side leaves by one of the sides that are not next to it.
         let next = |side: &usize| match sides.len() {
@@ -203,7 +202,7 @@ impl<'a> Draft<'a> {
             .filter(|next| !row.contains(next))
             .filter_map(|&next| self.gain(next, by).map(|change| (change, next)))
             .min()
-            .map(|(_, next)| (next, block))
+            .map(|(_, next)| next)
     }
 
     /// What a change costs, all blocks considered; `None` if it leaves the bounds.

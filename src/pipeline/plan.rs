@@ -398,7 +398,7 @@ fn balance(
 
 /// What the integer programme may do: enough for a gap of one per cent in less than a tenth of a build.
 /// Where the climb ends above that, HiGHS improves so many neighbourhoods, the worst first: ten times as
-/// dear as the twelve rounds more of a climb of 20 instead of 8, which reach it in two cities of three.
+/// dear as four rounds more of the climb.
 pub fn parity_options(match_sides: f64) -> parity::Options {
     parity::Options {
         events_max: 1 << 31,
@@ -406,7 +406,7 @@ pub fn parity_options(match_sides: f64) -> parity::Options {
         rows_max: 60_000,
         worth: match_sides,
         rounds_max: 20,
-        climb_max: 20,
+        climb_max: 12,
         gap_enough: 0.01,
         neighbourhoods_max: 100,
     }
