@@ -59,11 +59,7 @@ fn by_direction(arrangement: &Arrangement, partition: &Partition, subdomain: u32
         }
         let by = (by as i32).rem_euclid(4) as usize;
         for ((curve, _), direction) in walk.edges().zip(directed) {
-            let side = (direction + by) % 4;
-            let of_curve: &mut Vec<u32> = &mut sides[side];
-            if of_curve.last() != Some(&curve) {
-                of_curve.push(curve);
-            }
+            sides[(direction + by) % 4].push(curve);
         }
     }
     let is_free = |curve: u32| {

@@ -30,6 +30,9 @@ pub fn improve(
     most: u32,
     enough: impl Fn(i64) -> bool,
 ) -> u32 {
+    if enough(best.total()) {
+        return 0;
+    }
     let crosses = |id: usize| partition.curves[id].left != partition.curves[id].right;
     let around = Around::of(partition, crosses);
     let mut done = vec![false; partition.subdomains.len()];
