@@ -48,7 +48,8 @@
 //!    once more where a later step changed something.
 //! 6. `tips`: tips that are still acute get an edge across, and with it a fourth corner. Triangles
 //!    that are still small are closed.
-//! 7. `audit`: everything is measured against the input again; `thread`: the edges of each line are
+//! 7. `even`: small faces with an odd number of edges are made even, small triangles four-sided.
+//! 8. `audit`: everything is measured against the input again; `thread`: the edges of each line are
 //!    made one way from end to end; `leftovers`: what could not be had is named. Parts that can be
 //!    done at once (`finish`); what the input alone tells, while bands are joined. [`rooms`] looks afterwards whether a sub-domain with room for
 //!    elements was lost; that is measured, not promised.
@@ -87,6 +88,7 @@ mod clear;
 mod collapse;
 mod districts;
 mod edge;
+mod even;
 mod finish;
 mod graph;
 mod importance;
@@ -112,6 +114,7 @@ use crate::cleanup::changes::Change;
 use crate::cleanup::changes::Dropped;
 use crate::cleanup::changes::Tally;
 use crate::cleanup::collapse::Thin;
+use crate::cleanup::even::Even;
 use crate::cleanup::graph::Graph;
 use crate::cleanup::relax::Wanted;
 use crate::cleanup::rules::Rule;
@@ -334,6 +337,17 @@ const BLUNT: Blunt = Blunt {
     most: 0.6,
     share: 1.0,
 };
+/// Small faces with an odd number of edges. (Measured on six cities: the .1 % quantile of the time-step
+/// proxy grows by 4 to 15 %, the 1 % quantile of shapes by up to .006, the displacement that 99 % of the lines stay
+/// below by .001 to .005 of the size. Faces with six edges, two of them contracted, gain no more, for twice
+/// the displacement.)
+const EVEN: Even = Even {
+    small: 5.0,
+    large: 6.0,
+    edge: 0.55,
+    triangle: 0.28,
+    share: 1.0,
+};
 /// More than what should hold in the end: steps are damped, and lines are in each other's way.
 const WANTED: Wanted = Wanted {
     edge: 0.5,
@@ -387,5 +401,6 @@ fn make_room(graph: &mut Graph) {
     simplify::simplify(graph, &SMOOTH, &graph.nodes_since(mark));
     // two nodes that became one may have left a wedge between their long edges
     wedges::divide_wedges(graph, &GENTLE.zip, &graph.nodes_since(mark));
+    even::make_even(graph, &EVEN, &graph.nodes());
     relax::relax(graph, &wanted, &graph.nodes_since(relaxed));
 }

@@ -17,11 +17,13 @@ pub enum Step {
     Relax,
     /// Tips of strips and wedges get an edge across.
     Blunt,
+    /// Small faces with an odd number of edges get an even one.
+    Even,
 }
 
 impl Step {
     /// All steps and their names.
-    pub const NAMED: [(&'static str, Step); 7] = [
+    pub const NAMED: [(&'static str, Step); 8] = [
         ("simplify", Step::Simplify),
         ("separate", Step::Separate),
         ("zip", Step::Zip),
@@ -29,6 +31,7 @@ impl Step {
         ("collapse", Step::Collapse),
         ("relax", Step::Relax),
         ("blunt", Step::Blunt),
+        ("even", Step::Even),
     ];
 
     /// The step of that name.
