@@ -406,7 +406,7 @@ pub fn parity_options(match_sides: f64) -> parity::Options {
         rows_max: 60_000,
         worth: match_sides,
         rounds_max: 20,
-        climb_max: 12,
+        climb_max: 20,
         gap_enough: 0.01,
         neighbourhoods_max: 100,
     }
