@@ -15,6 +15,7 @@ use crate::cleanup::graph::Graph;
 use crate::cleanup::importance::is_rim_corner;
 use crate::cleanup::measure::between_deg;
 use crate::cleanup::measure::distance;
+use crate::cleanup::measure::to_segment;
 use crate::cleanup::operate::Bend;
 use crate::cleanup::steps::Step;
 use crate::geometry::point::Point;
@@ -44,6 +45,8 @@ const ANGLE_DEG: f64 = 50.0;
 const SINE: f64 = 0.6;
 /// 4 x area / perimeter of such a face, mesh sizes;
 const SIDE: f64 = 0.35;
+/// the distance of a node from an edge across a face, mesh sizes;
+const GAP: f64 = 0.4;
 /// and edges, mesh sizes.
 const EDGE: f64 = 0.25;
 
@@ -272,7 +275,10 @@ fn worst_shape(graph: &Graph, even: &Even, pair: [u32; 2], place: Xy) -> Option<
                 after.pop();
             }
             let (was, now) = (shape(&before, it.size_m), shape(&after, it.size_m));
-            if now.sine < SINE.min(was.sine) || now.side < SIDE.min(was.side) {
+            let is_worse = now.sine < SINE.min(was.sine)
+                || now.side < SIDE.min(was.side)
+                || now.gap < GAP.min(was.gap);
+            if is_worse {
                 return None;
             }
             worst = worst.min(now.sine).min(now.side);
@@ -287,11 +293,13 @@ struct Shape {
     sine: f64,
     /// 4 x area / perimeter, mesh sizes, if there are four.
     side: f64,
+    /// Least distance of a corner from a side that is not its own, mesh sizes.
+    gap: f64,
 }
 
 fn shape(polygon: &[Xy], size_m: f64) -> Shape {
     let n = polygon.len();
-    let (mut sine, mut area2_m2, mut length_m) = (1.0_f64, 0.0, 0.0);
+    let (mut sine, mut area2_m2, mut length_m, mut gap_m) = (1.0_f64, 0.0, 0.0, f64::INFINITY);
     for k in 0..n {
         let (a, o, b) = (polygon[(k + n - 1) % n], polygon[k], polygon[(k + 1) % n]);
         let sides = distance(a, o) * distance(o, b);
@@ -302,11 +310,15 @@ fn shape(polygon: &[Xy], size_m: f64) -> Shape {
         }
         area2_m2 += cross(polygon[0], o, b);
         length_m += distance(o, b);
+        for other in (k + 2)..(k + n) {
+            gap_m = gap_m.min(to_segment(polygon[other % n], o, b).0);
+        }
     }
     let side = 2.0 * area2_m2 / length_m / size_m;
     Shape {
         sine,
         side: if n == 4 { side } else { 1.0 },
+        gap: gap_m / size_m,
     }
 }
 
