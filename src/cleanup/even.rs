@@ -239,7 +239,7 @@ fn ways(graph: &Graph, even: &Even, face: &Face) -> Vec<Way> {
     ways
 }
 
-/// The worst shape of the faces around two nodes that become one at `place`; none if something gets
+/// The worst shape of the faces around two nodes that become one (or are one) at `place`; none if something gets
 /// worse than it may.
 fn worst_shape(graph: &Graph, even: &Even, pair: [u32; 2], place: Xy) -> Option<f64> {
     if !stays_open(graph, pair, place) {
@@ -255,8 +255,10 @@ fn worst_shape(graph: &Graph, even: &Even, pair: [u32; 2], place: Xy) -> Option<
                 return None;
             }
             let side = usize::from(it.ends[0] != node);
-            let Beside::Face(face) = beside(graph, even, edge, side) else {
-                continue;
+            let face = match beside(graph, even, edge, side) {
+                Beside::Face(face) => face,
+                Beside::Large => continue,
+                Beside::Unknown => return None,
             };
             let nodes = face.walk.iter().map(|&(_, it)| it);
             let before: SmallVec<[Xy; EDGES_MAX]> =
@@ -275,10 +277,7 @@ fn worst_shape(graph: &Graph, even: &Even, pair: [u32; 2], place: Xy) -> Option<
                 after.pop();
             }
             let (was, now) = (shape(&before, it.size_m), shape(&after, it.size_m));
-            let is_worse = now.sine < SINE.min(was.sine)
-                || now.side < SIDE.min(was.side)
-                || now.gap < GAP.min(was.gap);
-            if is_worse {
+            if now.is_worse_than(&was) {
                 return None;
             }
             worst = worst.min(now.sine).min(now.side);
@@ -295,6 +294,15 @@ struct Shape {
     side: f64,
     /// Least distance of a corner from a side that is not its own, mesh sizes.
     gap: f64,
+}
+
+impl Shape {
+    /// True if something is worse than it may be, and than it was.
+    fn is_worse_than(&self, was: &Shape) -> bool {
+        self.sine < SINE.min(was.sine)
+            || self.side < SIDE.min(was.side)
+            || self.gap < GAP.min(was.gap)
+    }
 }
 
 fn shape(polygon: &[Xy], size_m: f64) -> Shape {
@@ -382,10 +390,30 @@ fn bend_side(graph: &mut Graph, even: &Even, face: &Face) -> Option<()> {
     sides.into_iter().find_map(|(length_m, edge, from)| {
         let to = graph.edges[edge as usize].other(from);
         let p = corner_beside(graph, graph.metres(from), graph.metres(to), 0.5);
+        if !leaves_room(graph, even, edge, from, p) {
+            return None;
+        }
         graph.bend(edge, Bend::At(p), even.share)?;
         graph.note("cornered", p, 0.5 * length_m * half_turn(graph).tan());
         Some(())
     })
+}
+
+/// True if what lies beyond an edge of a face, which starts at `from` there, bears that the edge bends
+/// into it to `p`.
+fn leaves_room(graph: &Graph, even: &Even, edge: u32, from: u32, p: Point) -> bool {
+    let side = usize::from(graph.edges[edge as usize].ends[0] == from);
+    let face = match beside(graph, even, edge, side) {
+        Beside::Face(face) => face,
+        Beside::Large => return true,
+        Beside::Unknown => return false,
+    };
+    // from the other end of the edge on
+    let nodes = face.walk.iter().map(|&(_, it)| graph.metres(it));
+    let before: SmallVec<[Xy; EDGES_MAX]> = nodes.collect();
+    let mut after = before.clone();
+    after.insert(1, graph.measure.metres(p));
+    !shape(&after, face.size_m).is_worse_than(&shape(&before, face.size_m))
 }
 
 /// Makes the one node of a thin triangle with four edges that is no corner one, by moving it out.
@@ -409,7 +437,8 @@ fn raise_node(graph: &mut Graph, even: &Even, face: &Face) -> Option<()> {
     let t = along / distance(a, b).powi(2);
     let p = corner_beside(graph, a, b, t.clamp(MIDDLE[0], MIDDLE[1]));
     let place = graph.measure.metres(p);
-    if !stays_open(graph, [node, node], place) || !graph.shift(node, p, even.share) {
+    worst_shape(graph, even, [node, node], place)?;
+    if !graph.shift(node, p, even.share) {
         return None;
     }
     graph.note("cornered", p, distance(o, place));
