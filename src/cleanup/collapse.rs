@@ -76,7 +76,7 @@ fn thin_faces(graph: &Graph, thin: &Thin, nodes: &[u32]) -> Vec<Face> {
     let mut way = Vec::with_capacity(WALK_MAX);
     for &node in nodes {
         for &edge in &graph.star[node as usize] {
-            let side = usize::from(graph.edges[edge as usize].ends[0] != node);
+            let side = graph.edges[edge as usize].end_at(node);
             if !seen[edge as usize][side] {
                 faces.extend(walk(graph, &mut seen, (edge, side), thin, &mut way));
             }
@@ -113,7 +113,7 @@ fn walk(
         size = size.min(it.size_m);
         walk.push((edge, it.ends[side]));
         let (leaves, at) = (leaving(graph, edge, it.ends[1 - side]), it.ends[1 - side]);
-        side = usize::from(graph.edges[leaves as usize].ends[0] != at);
+        side = graph.edges[leaves as usize].end_at(at);
         edge = leaves;
     }
     // else it came into a face that is too long
@@ -123,7 +123,8 @@ fn walk(
     }
     let cell_m = graph.measure.grid().cell_m;
     let width = area_cells2 as f64 * cell_m * cell_m / length / size;
-    let is_triangle = width < thin.triangle && walk.len() <= SIX && corners(graph, walk) == 3;
+    let is_triangle =
+        width < thin.triangle && walk.len() <= SIX && corners(graph, walk, CORNER_DEG) == 3;
     (is_triangle || width < thin.width).then_some(Face {
         width,
         is_triangle,
@@ -147,15 +148,15 @@ pub(super) fn leaving(graph: &Graph, edge: u32, node: u32) -> u32 {
     next.unwrap_or(edge)
 }
 
-/// How many corners a walk has where it turns left.
-fn corners(graph: &Graph, walk: &[(u32, u32)]) -> usize {
+/// How many corners a walk has where it turns left, by more than this.
+pub(super) fn corners(graph: &Graph, walk: &[(u32, u32)], above_deg: f64) -> usize {
     let n = walk.len();
     let node = |k: usize| walk[k % n].1;
     (0..n)
         .filter(|&k| {
             let (a, o, b) = (node(k + n - 1), node(k), node(k + 1));
             let turns_left = orient(graph.point(a), graph.point(o), graph.point(b)) > 0;
-            turns_left && 180.0 - angle_deg(graph, o, a, b) > CORNER_DEG
+            turns_left && 180.0 - angle_deg(graph, o, a, b) > above_deg
         })
         .count()
 }

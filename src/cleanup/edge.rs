@@ -32,6 +32,12 @@ impl Edge {
         self.ends[usize::from(self.ends[0] == node)]
     }
 
+    /// Which of its ends `node` is; so is the side on the left of the way from there.
+    #[inline]
+    pub(super) fn end_at(&self, node: u32) -> usize {
+        usize::from(self.ends[0] != node)
+    }
+
     pub(super) fn is_rim(&self) -> bool {
         self.inside[0] != self.inside[1]
     }

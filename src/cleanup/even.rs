@@ -10,6 +10,7 @@
 
 use smallvec::SmallVec;
 
+use crate::cleanup::collapse::corners;
 use crate::cleanup::collapse::leaving;
 use crate::cleanup::graph::Graph;
 use crate::cleanup::importance::is_rim_corner;
@@ -17,9 +18,12 @@ use crate::cleanup::measure::between_deg;
 use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;
 use crate::cleanup::operate::Bend;
+use crate::cleanup::sharp::gaps_deg;
 use crate::cleanup::steps::Step;
 use crate::geometry::point::Point;
 use crate::geometry::point::Xy;
+use crate::geometry::quad::cross;
+use crate::geometry::quad::measure;
 
 /// Which faces are made even. Lengths in mesh sizes, along a face the least one.
 #[derive(Clone, Copy, Debug)]
@@ -92,9 +96,11 @@ pub(super) fn make_even(graph: &mut Graph, even: &Even, nodes: &[u32]) {
     for &node in nodes {
         let at = graph.point(node);
         for &edge in &graph.star[node as usize] {
-            let side = usize::from(graph.edges[edge as usize].ends[0] != node);
-            if let Some(face) = small_face(graph, even, edge, side)
-                // once, from its first node
+            let it = &graph.edges[edge as usize];
+            let side = it.end_at(node);
+            // once, from its first node
+            if at < graph.point(it.other(node))
+                && let Some(face) = small_face(graph, even, edge, side)
                 && (face.walk.iter()).all(|&(_, it)| at <= graph.point(it))
             {
                 starts.push((face.width, at, edge, side));
@@ -151,7 +157,7 @@ fn beside(graph: &Graph, even: &Even, edge: u32, side: usize) -> Beside {
         }
         walk.push((edge, from));
         edge = leaving(graph, edge, to);
-        side = usize::from(graph.edges[edge as usize].ends[0] != to);
+        side = graph.edges[edge as usize].end_at(to);
         if (edge, side) == start {
             break;
         }
@@ -168,11 +174,16 @@ fn beside(graph: &Graph, even: &Even, edge: u32, side: usize) -> Beside {
     })
 }
 
+/// What lies beyond an edge of a face, which starts at `from` there.
+fn beyond(graph: &Graph, even: &Even, edge: u32, from: u32) -> Beside {
+    let side = 1 - graph.edges[edge as usize].end_at(from);
+    beside(graph, even, edge, side)
+}
+
 /// True if what lies beyond an edge of a face, which starts at `from` there, may become even or odd
 /// with it: large, or another odd face with at least so many edges.
 fn bears(graph: &Graph, even: &Even, edge: u32, from: u32, least: usize) -> bool {
-    let side = usize::from(graph.edges[edge as usize].ends[0] == from);
-    match beside(graph, even, edge, side) {
+    match beyond(graph, even, edge, from) {
         Beside::Large => true,
         Beside::Face(other) => {
             let (n, is_same) = (other.walk.len(), other.walk.contains(&(edge, from)));
@@ -254,7 +265,7 @@ fn worst_shape(graph: &Graph, even: &Even, pair: [u32; 2], place: Xy) -> Option<
             if !pair.contains(&it.other(node)) && now < EDGE.min(was) {
                 return None;
             }
-            let side = usize::from(it.ends[0] != node);
+            let side = it.end_at(node);
             let face = match beside(graph, even, edge, side) {
                 Beside::Face(face) => face,
                 Beside::Large => continue,
@@ -307,27 +318,24 @@ impl Shape {
 
 fn shape(polygon: &[Xy], size_m: f64) -> Shape {
     let n = polygon.len();
-    let (mut sine, mut area2_m2, mut length_m, mut gap_m) = (1.0_f64, 0.0, 0.0, f64::INFINITY);
+    let (mut sine, mut gap_m) = (1.0_f64, f64::INFINITY);
     for k in 0..n {
         let (a, o, b) = (polygon[(k + n - 1) % n], polygon[k], polygon[(k + 1) % n]);
-        let sides = distance(a, o) * distance(o, b);
-        let turn = cross(a, o, b) / sides;
         let is_below_90 = (a[0] - o[0]) * (b[0] - o[0]) + (a[1] - o[1]) * (b[1] - o[1]) > 0.0;
-        if n == 4 || (is_below_90 && turn > 0.0) {
-            sine = sine.min(turn);
+        let turn = cross(a, o, b);
+        if is_below_90 && turn > 0.0 {
+            sine = sine.min(turn / (distance(a, o) * distance(o, b)));
         }
-        area2_m2 += cross(polygon[0], o, b);
-        length_m += distance(o, b);
         for other in (k + 2)..(k + n) {
             gap_m = gap_m.min(to_segment(polygon[other % n], o, b).0);
         }
     }
-    let side = 2.0 * area2_m2 / length_m / size_m;
-    Shape {
-        sine,
-        side: if n == 4 { side } else { 1.0 },
-        gap: gap_m / size_m,
+    let (mut side, gap) = (1.0, gap_m / size_m);
+    if let Ok(quad) = <&[Xy; 4]>::try_from(polygon) {
+        let measured = measure(quad);
+        (sine, side) = (measured.scaled_jacobian, measured.hydraulic_size_m / size_m);
     }
+    Shape { sine, side, gap }
 }
 
 /// False if an angle between two edges at or around a pair of nodes that become one at `place` gets
@@ -359,12 +367,9 @@ fn stays_open(graph: &Graph, pair: [u32; 2], place: Xy) -> bool {
 
 /// The least angle between neighbouring directions from `hub`, degrees.
 fn sharpest_deg(hub: Xy, ends: &[Xy]) -> f64 {
-    let headings = ends.iter().map(|it| (it[1] - hub[1]).atan2(it[0] - hub[0]));
-    let mut headings: SmallVec<[f64; 12]> = headings.map(f64::to_degrees).collect();
-    headings.sort_by(f64::total_cmp);
-    headings.extend(headings.first().map(|it| it + 360.0));
-    let gaps = headings.windows(2).map(|it| it[1] - it[0]);
-    gaps.fold(360.0, f64::min)
+    let bearings = ends.iter().map(|it| (it[1] - hub[1]).atan2(it[0] - hub[0]));
+    let mut bearings: SmallVec<[f64; 12]> = bearings.map(f64::to_degrees).collect();
+    gaps_deg(&mut bearings).fold(360.0, f64::min)
 }
 
 /// True if a triangle is thin enough for a fourth corner.
@@ -402,8 +407,7 @@ fn bend_side(graph: &mut Graph, even: &Even, face: &Face) -> Option<()> {
 /// True if what lies beyond an edge of a face, which starts at `from` there, bears that the edge bends
 /// into it to `p`.
 fn leaves_room(graph: &Graph, even: &Even, edge: u32, from: u32, p: Point) -> bool {
-    let side = usize::from(graph.edges[edge as usize].ends[0] == from);
-    let face = match beside(graph, even, edge, side) {
+    let face = match beyond(graph, even, edge, from) {
         Beside::Face(face) => face,
         Beside::Large => return true,
         Beside::Unknown => return false,
@@ -418,18 +422,15 @@ fn leaves_room(graph: &Graph, even: &Even, edge: u32, from: u32, p: Point) -> bo
 
 /// Makes the one node of a thin triangle with four edges that is no corner one, by moving it out.
 fn raise_node(graph: &mut Graph, even: &Even, face: &Face) -> Option<()> {
+    let corner_deg = graph.measure.corner_deg;
+    if !wants_corner(graph, even, face) || corners(graph, &face.walk, corner_deg) != 3 {
+        return None;
+    }
     let at = |k: usize| graph.metres(face.walk[k % 4].1);
-    let is_flat = |&k: &usize| {
-        let (a, o, b) = (at(k + 3), at(k), at(k + 1));
-        180.0 - between_deg(o, a, b) < graph.measure.corner_deg
-    };
-    let turns_left = |k: usize| cross(at(k + 3), at(k), at(k + 1)) > 0.0;
-    let flat = (0..4).find(is_flat)?;
-    let is_triangle = (0..4).all(|k| k == flat || (!is_flat(&k) && turns_left(k)));
+    let turn_deg = |k: usize| 180.0 - between_deg(at(k), at(k + 3), at(k + 1));
+    let flat = (0..4).find(|&k| turn_deg(k) <= corner_deg)?;
     let node = face.walk[flat].1;
-    let mut star = graph.star[node as usize].iter();
-    let is_on_rim = star.any(|&edge| graph.edges[edge as usize].is_rim());
-    if !wants_corner(graph, even, face) || !is_triangle || is_on_rim {
+    if graph.is_on_rim(node) {
         return None;
     }
     let (a, o, b) = (at(flat + 3), at(flat), at(flat + 1));
@@ -457,9 +458,4 @@ fn corner_beside(graph: &Graph, a: Xy, b: Xy, t: f64) -> Point {
 /// Half of the turn of a fourth corner, radians.
 fn half_turn(graph: &Graph) -> f64 {
     (0.5 * (graph.measure.corner_deg + MORE_DEG)).to_radians()
-}
-
-/// Twice the area of a triangle, positive if it turns left.
-fn cross(o: Xy, a: Xy, b: Xy) -> f64 {
-    (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])
 }

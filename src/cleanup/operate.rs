@@ -124,7 +124,7 @@ impl Graph<'_> {
 
     /// True if an edge of the outline ends at `node`. Two such nodes only become one along the
     /// outline: elsewhere the domain would touch itself in a point, a door that is no door.
-    fn is_on_rim(&self, node: u32) -> bool {
+    pub(super) fn is_on_rim(&self, node: u32) -> bool {
         let star = self.star[node as usize].iter();
         star.into_iter()
             .any(|&edge| self.edges[edge as usize].is_rim())

@@ -169,7 +169,7 @@ impl<'g, 'm> Faces<'g, 'm> {
             cycle.area_cells2 += i128::from(orient(origin, a, b));
             cycle.first = cycle.first.min(a);
             let next = leaving(self.graph, half >> 1, to);
-            half = next << 1 | u32::from(self.graph.edges[next as usize].ends[0] != to);
+            half = next << 1 | self.graph.edges[next as usize].end_at(to) as u32;
         }
         self.cycles.push(cycle);
     }

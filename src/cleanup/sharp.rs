@@ -27,13 +27,18 @@ pub(super) fn sharp_angles(arrangement: &Arrangement, below_deg: f64) -> u64 {
             .iter()
             .map(|&it| half(it).map(|node| points[node as usize]));
         bearings_deg.extend(ends.map(|[from, to]| bearing_deg(from, to)));
-        bearings_deg.sort_unstable_by(f64::total_cmp);
-        let around = bearings_deg[0] + 360.0 - bearings_deg[star.len() - 1];
-        let gaps = bearings_deg.windows(2).map(|pair| pair[1] - pair[0]);
         let is_sharp = |&gap: &f64| gap < below_deg;
-        sharp += gaps.chain([around]).filter(is_sharp).count() as u64;
+        sharp += gaps_deg(&mut bearings_deg).filter(is_sharp).count() as u64;
     }
     sharp
+}
+
+/// The angles between neighbouring bearings, all around; 360 if there is one. Sorts them.
+pub(super) fn gaps_deg(bearings_deg: &mut [f64]) -> impl Iterator<Item = f64> {
+    bearings_deg.sort_unstable_by(f64::total_cmp);
+    let around = bearings_deg[0] + 360.0 - bearings_deg[bearings_deg.len() - 1];
+    let gaps = bearings_deg.windows(2).map(|pair| pair[1] - pair[0]);
+    gaps.chain([around])
 }
 
 fn bearing_deg(from: Point, to: Point) -> f64 {
