@@ -58,9 +58,9 @@ const EDGE: f64 = 0.25;
 const PLACES: [f64; 5] = [0.5, 0.25, 0.75, 0.0, 1.0];
 /// What a whole mesh size of movement counts beside a sine.
 const MOVEMENT: f64 = 0.3;
-/// The fourth corner of a triangle turns by so much more than what counts as a corner, degrees:
+/// A fourth corner turns by so much more than what counts as a corner, degrees:
 /// relaxation takes some of it back.
-const MORE_DEG: f64 = 5.0;
+const MORE_DEG: f64 = 10.0;
 /// Where corners are blunter than this, degrees, a triangle would have to bulge for one.
 const CORNER_MAX_DEG: f64 = 45.0;
 /// It lies between these shares of the way along its side.
@@ -447,7 +447,7 @@ fn raise_node(graph: &mut Graph, even: &Even, face: &Face) -> Option<()> {
 }
 
 /// The place to the right of the way from `a` to `b`, at `t` of it, over which a walk turns at a corner.
-fn corner_beside(graph: &Graph, a: Xy, b: Xy, t: f64) -> Point {
+pub(super) fn corner_beside(graph: &Graph, a: Xy, b: Xy, t: f64) -> Point {
     // at a height h over a side of length 1: atan(h / t) + atan(h / (1 - t)) = turn
     let tan = (2.0 * half_turn(graph)).tan();
     let height = ((1.0 + 4.0 * tan * tan * t * (1.0 - t)).sqrt() - 1.0) / (2.0 * tan);

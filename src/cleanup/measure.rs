@@ -56,7 +56,7 @@ const HOLD_RANK: f64 = 1e12;
 /// A node this near to a corner of its line, along the line, stands for it, mesh sizes.
 const AT_CORNER: f64 = 0.1;
 /// What one step of priority counts: more than any line is long, metres.
-const PRIORITY_RANK: f64 = 1e9;
+pub(super) const PRIORITY_RANK: f64 = 1e9;
 
 impl<'a> Measure<'a> {
     pub(super) fn new(domain: &'a Domain, sizes: &SizeWish, options: &Options) -> Measure<'a> {

@@ -3,14 +3,18 @@
 //!
 //! A tip has three corners, so the quads behind it come in two rows, or in one whose first quad has
 //! a flat corner. With an edge across it, about as long as the place is wide, it has four corners:
-//! one row will do.
+//! one row will do. If the lesser line may not go so far, the other one does; if neither may, one of them
+//! turns a corner beside the tip, which moves it half as far.
 
+use crate::cleanup::even::corner_beside;
 use crate::cleanup::graph::Graph;
+use crate::cleanup::measure::PRIORITY_RANK;
 use crate::cleanup::measure::distance;
 use crate::cleanup::operate::Bend;
 use crate::cleanup::steps::Step;
 use crate::cleanup::wedges::Wedge;
 use crate::cleanup::wedges::wedges;
+use crate::geometry::quad::cross;
 
 /// Which tips are blunted.
 #[derive(Clone, Copy, Debug)]
@@ -22,12 +26,28 @@ pub(super) struct Blunt {
     pub(super) across: f64,
     pub(super) least: f64,
     pub(super) most: f64,
-    /// How much of the tolerance may be used.
-    pub(super) share: f64,
+    /// How far from the tip a side turns a corner instead, mesh sizes.
+    pub(super) corner: f64,
+    /// How much of the tolerance may be used: by the line of lower rank, by the other one, for a corner.
+    pub(super) shares: [f64; 3],
 }
 
 /// A side more than so many times as long as it should be is given a node.
 const LONG: f64 = 1.5;
+
+/// A side longer than this, mesh sizes, is given a node where it turns; a shorter one turns at its end.
+const BENT: f64 = 1.0;
+/// But no nearer to the tip than this, mesh sizes,
+const NEAREST: f64 = 0.3;
+/// nor elsewhere than between these shares of the way to the node after it.
+const MIDDLE: [f64; 2] = [0.2, 0.8];
+
+/// Two sides of a tip by their ends: one that stays and one that moves.
+#[derive(Clone, Copy)]
+struct Sides {
+    stays: u32,
+    goes: u32,
+}
 
 /// Blunts the tips at `nodes`, the sharpest first.
 pub(super) fn blunt_tips(graph: &mut Graph, blunt: &Blunt, nodes: &[u32]) {
@@ -39,16 +59,45 @@ pub(super) fn blunt_tips(graph: &mut Graph, blunt: &Blunt, nodes: &[u32]) {
     }
 }
 
-/// Leads the side of lower rank along the other one as far as both reach, and from there across.
+/// Blunts one tip in the first way that is allowed.
 fn blunt_one(graph: &mut Graph, blunt: &Blunt, tip: &Wedge) -> Option<()> {
-    let hub = tip.hub;
-    let sides = [graph.find(hub, tip.a)?, graph.find(hub, tip.b)?];
-    let rank = sides.map(|edge| graph.edges[edge as usize].rank);
+    let [a, b] = [tip.a, tip.b].map(|end| graph.find(tip.hub, end));
+    let rank = [a?, b?].map(|edge| graph.edges[edge as usize].rank);
     let (stays, goes) = if rank[0] >= rank[1] {
         (tip.a, tip.b)
     } else {
         (tip.b, tip.a)
     };
+    let usual = Sides { stays, goes };
+    let swapped = Sides {
+        stays: goes,
+        goes: stays,
+    };
+    // outlines, held lines and those of higher priority stay
+    let may_swap = (rank[0] - rank[1]).abs() < PRIORITY_RANK;
+    let ways = if may_swap {
+        &[usual, swapped][..]
+    } else {
+        &[usual]
+    };
+    let [lesser, other, corner] = blunt.shares;
+    (ways.iter().zip([lesser, other]))
+        .find_map(|(&sides, share)| cross_over(graph, blunt, tip, sides, share))
+        .or_else(|| {
+            ways.iter()
+                .find_map(|&sides| turn_corner(graph, blunt, tip, sides, corner))
+        })
+}
+
+/// Leads one side along the other one as far as both reach, and from there across.
+fn cross_over(
+    graph: &mut Graph,
+    blunt: &Blunt,
+    tip: &Wedge,
+    sides: Sides,
+    share: f64,
+) -> Option<()> {
+    let (hub, Sides { stays, goes }) = (tip.hub, sides);
     let size_m = graph.size_at_m(hub);
     let opening = 2.0 * (0.5 * tip.angle_deg).to_radians().sin();
     let (o, ends) = (graph.metres(hub), [stays, goes].map(|it| graph.metres(it)));
@@ -67,7 +116,7 @@ fn blunt_one(graph: &mut Graph, blunt: &Blunt, tip: &Wedge) -> Option<()> {
         let stays = node_at(graph, hub, stays, reach_m)?;
         let goes = node_at(graph, hub, goes, reach_m)?;
         let edge = graph.find(hub, goes)?;
-        graph.bend(edge, Bend::To(stays), blunt.share)
+        graph.bend(edge, Bend::To(stays), share)
     })?;
     let moved_m = reach_m * tip.angle_deg.to_radians().sin();
     graph.note("blunted", graph.point(hub), moved_m);
@@ -86,4 +135,52 @@ fn node_at(graph: &mut Graph, hub: u32, end: u32, reach_m: f64) -> Option<u32> {
     // the side stays where it is, however much of the tolerance it has used
     let edge = graph.find(hub, end)?;
     graph.bend(edge, Bend::At(graph.measure.on_grid(place)), 1.0)
+}
+
+/// Gives one side a corner near the tip, away from the other side: at a new node, or at its end if no
+/// third line meets it there.
+fn turn_corner(
+    graph: &mut Graph,
+    blunt: &Blunt,
+    tip: &Wedge,
+    sides: Sides,
+    share: f64,
+) -> Option<()> {
+    let (hub, end) = (tip.hub, sides.goes);
+    let edge = graph.find(hub, end)?;
+    let (o, a) = (graph.metres(hub), graph.metres(end));
+    let length = distance(o, a) / graph.size_at_m(hub);
+    let is_long = length > BENT;
+    let (beyond, t) = if is_long {
+        (end, (blunt.corner / length).min(0.5))
+    } else {
+        if graph.degree(end) != 2 || graph.is_on_rim(end) || length < NEAREST {
+            return None;
+        }
+        let beyond = (graph.neighbours(end).into_iter()).find(|&it| it != hub)?;
+        let b = graph.metres(beyond);
+        let along = (a[0] - o[0]) * (b[0] - o[0]) + (a[1] - o[1]) * (b[1] - o[1]);
+        (beyond, along / distance(o, b).powi(2))
+    };
+    if !is_long && !(MIDDLE[0]..=MIDDLE[1]).contains(&t) {
+        return None;
+    }
+    let b = graph.metres(beyond);
+    let is_left = cross(o, a, graph.metres(sides.stays)) > 0.0;
+    let p = if is_left {
+        corner_beside(graph, o, b, t)
+    } else {
+        corner_beside(graph, b, o, 1.0 - t)
+    };
+    let is_done = if is_long {
+        graph.bend(edge, Bend::At(p), share).is_some()
+    } else {
+        graph.shift(end, p, share)
+    };
+    if !is_done {
+        return None;
+    }
+    let place = graph.measure.metres(p);
+    graph.note("cornered", p, cross(o, b, place).abs() / distance(o, b));
+    Some(())
 }

@@ -13,11 +13,11 @@ use crate::meshing::edits::valence_cost;
 use crate::meshing::kernel::Few;
 use crate::meshing::kernel::Kernel;
 use crate::meshing::kernel::quad_of;
+use crate::meshing::lift::worth;
 use crate::meshing::refill::refills;
 use crate::meshing::smooth::OPEN;
 use crate::meshing::smooth::PERFECT;
 use crate::meshing::smooth::smooth_few;
-use crate::meshing::smooth::worth;
 use crate::meshing::star::Phase;
 use crate::meshing::triangulate::NONE;
 

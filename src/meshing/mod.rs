@@ -34,7 +34,7 @@
 //!   minimum-weight pairs.
 //! - `last_resort`: any [`join`] of any triangulation with rings; its page says why it cannot fail.
 //! - `cavity`: the last resort in the hole around a bad quad; such quads are counted.
-//! - `kernel`, `edits`, `refill`, `improve`, `star`, `smooth`: the finish, on the part of a draft
+//! - `kernel`, `edits`, `refill`, `improve`, `star`, `smooth`, `lift`: the finish, on the part of a draft
 //!   that is not settled. Operations after Kinney (1997) and Canann, Muthukrishnan, Phillips (1998),
 //!   each with undo; smoothing after Garanzha and others (2021).
 //! - `windows`, `regular`: in it, convex windows around irregular nodes filled again by a pattern
@@ -70,6 +70,7 @@ mod join;
 mod kernel;
 mod last_resort;
 mod lattice;
+mod lift;
 mod looping;
 mod mapping;
 mod pair;
