@@ -272,18 +272,18 @@ const FIRM: Pass = Pass {
         edge: 0.25,
         gap: 0.18,
         end: 0.25,
-        share: 0.55,
+        share: 0.53,
     },
     zip: Zip {
         below_deg: 20.0,
         gap: 0.3,
-        share: 0.55,
+        share: 0.53,
     },
     thin: Thin {
         width: 0.2,
         triangle: 0.29,
         reach: 0.5,
-        share: 0.55,
+        share: 0.53,
         drops_loops: false,
     },
 };
@@ -343,7 +343,7 @@ const BLUNT: Blunt = Blunt {
 /// below by .001 to .005 of the size. Faces with six edges, two of them contracted, gain no more, for twice
 /// the displacement.)
 const EVEN: Even = Even {
-    small: 5.0,
+    small: 6.0,
     large: 6.0,
     edge: 0.55,
     triangle: 0.28,
