@@ -26,9 +26,9 @@
 //! 8. Lines meet only where they come within the sum of their tolerances: those that are everywhere
 //!    farther apart keep their topology.
 //!
-//! On 18 real cases at two sizes each, 99 % of the line length lies within .13 to .32 h of its edges
-//! (below a quarter of the size but for seven runs with the densest line work), and the 0.1 %
-//! quantile of the sides of the finished meshes is .20 to .61 h.
+//! On 18 real cases at two sizes each, 99 % of the line length lies within .13 to .33 h of its edges
+//! (below a quarter of the size but for eight runs with the densest line work), and the 0.1 %
+//! quantile of the sides of the finished meshes is .21 to .61 h.
 //!
 //! # Needs
 //! An arrangement that is noded and clipped ([`noding::clip()`](crate::noding::clip())).
@@ -45,16 +45,16 @@
 //! 4. `collapse`: faces that are too thin to hold elements are closed, and small triangles, which
 //!    need six sides; small loops are dropped.
 //! 5. `relax`: with frozen topology, nodes and edges push each other apart. Once everywhere, and
-//!    once more where a later step changed something.
-//! 6. `tips`: tips that are still acute get an edge across, and with it a fourth corner. Triangles
-//!    that are still small are closed.
+//!    again where a later step changed something.
+//! 6. `tips`: tips that are still acute get an edge across, and with it a fourth corner, or the
+//!    corner alone. Triangles that are still small are closed.
 //! 7. `even`: small faces with an odd number of edges are made even, small triangles four-sided.
 //! 8. `audit`: everything is measured against the input again; `thread`: the edges of each line are
 //!    made one way from end to end; `leftovers`: what could not be had is named. Parts that can be
 //!    done at once (`finish`); what the input alone tells, while bands are joined. [`rooms`] looks afterwards whether a sub-domain with room for
 //!    elements was lost; that is measured, not promised.
 //!
-//! Steps 1 to 4 run first with half of the tolerance, then with more of it, then with all: what
+//! Steps 6, 7 and 5 run twice. Steps 1 to 4 run first with half of the tolerance, then with more of it, then with all: what
 //! needs much movement is done only where nothing else helps. `operate` holds the operations,
 //! `attempt` takes back what was tried together and failed, `clear` is the exact test, `stations`
 //! and `measure` keep the books of stretches, `graph`, `edge`, `index` and `cells` are the graph.
@@ -327,9 +327,12 @@ const HOPELESS: Thin = Thin {
     share: 1.0,
     drops_loops: false,
 };
-/// What is left of acute tips when all has found its place. (Measured on five cities: up to 60
-/// degrees, the smallest cells of dense places are up to a sixth smaller; with .8 of the tolerance
-/// half of the gain is gone.)
+/// What is left of acute tips when all has found its place. (Measured on five cities: with .8 of the
+/// tolerance half of the gain is gone. Up to 52 degrees, the 1 % quantile of shapes grows by up to .009,
+/// but more than 1 % of the lines of two more cities lie beyond a quarter of the size.
+/// The other line and the corner, on nine cities: the .1 % quantile of the time-step proxy grows by 2 to
+/// 16 %, the 1 % quantile of shapes by up to .034, the displacement that 99 % of the lines stay below by
+/// .003 of the size at most.)
 const BLUNT: Blunt = Blunt {
     below_deg: 45.0,
     across: 0.45,
@@ -358,7 +361,8 @@ const WANTED: Wanted = Wanted {
 };
 /// Zipping, closing and merging make work for each other; more rounds than this find hardly any.
 const ROUNDS_MAX: usize = 6;
-/// Relaxation opens some of the tips that could not be blunted before it.
+/// Relaxation opens some of the tips that could not be blunted before it. (Measured on nine cities: the .1 %
+/// quantile of the time-step proxy grows by up to 6 %; a third round gains nothing.)
 const FINAL_ROUNDS: usize = 2;
 
 /// All steps, in order.
