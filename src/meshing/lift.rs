@@ -231,3 +231,78 @@ fn compass(
     }
     best
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::meshing::kernel::grid;
+    use crate::meshing::smooth::wish;
+    use proptest::prelude::*;
+
+    /// A grid whose inner nodes have moved by up to `by` of a cell.
+    fn shaken(moves: &[[f64; 2]], by: f64) -> Kernel {
+        let mut kernel = grid(5, 4);
+        wish(&mut kernel, 1.0);
+        let inner = (0..kernel.nodes.len()).filter(|&node| !kernel.held[node]);
+        for (node, [x, y]) in inner.collect::<Vec<_>>().into_iter().zip(moves) {
+            let at = kernel.nodes[node];
+            kernel.nodes[node] = [at[0] + by * x, at[1] + by * y];
+        }
+        kernel
+    }
+
+    fn all(kernel: &Kernel, measure: impl Fn(u32) -> f64) -> Vec<f64> {
+        (0..kernel.quads.len() as u32).map(measure).collect()
+    }
+
+    fn least(values: &[f64]) -> f64 {
+        values.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    proptest! {
+        #[test]
+        fn levelling_makes_no_fair_quad_poor(
+            moves in proptest::collection::vec(prop::array::uniform2(-1.0_f64..1.0), 12),
+            by in 0.0_f64..0.45,
+        ) {
+            let mut kernel = shaken(&moves, by);
+            let nodes = kernel.nodes.clone();
+            let worths = all(&kernel, |quad| worth(&kernel, quad, 1.0));
+            let before = least(&all(&kernel, |quad| evenness(&kernel, quad)));
+            level_worst(&mut kernel, 1.0);
+            let after = least(&all(&kernel, |quad| evenness(&kernel, quad)));
+            prop_assert!(after >= before.min(EVEN));
+            prop_assert!(before < EVEN || kernel.nodes == nodes, "what is even enough stays");
+            for (quad, was) in worths.into_iter().enumerate() {
+                prop_assert!(worth(&kernel, quad as u32, 1.0) >= was.min(KEPT) - 1e-12);
+            }
+        }
+
+        #[test]
+        fn lifting_lowers_no_least_worth(
+            moves in proptest::collection::vec(prop::array::uniform2(-1.0_f64..1.0), 12),
+            by in 0.0_f64..0.45,
+        ) {
+            let mut kernel = shaken(&moves, by);
+            let before = least(&all(&kernel, |quad| worth(&kernel, quad, 1.0)));
+            lift_worst(&mut kernel, 1.0);
+            prop_assert!(least(&all(&kernel, |quad| worth(&kernel, quad, 1.0))) >= before);
+        }
+    }
+
+    #[test]
+    fn one_steep_pair_is_levelled() {
+        // the middle column of three: a cell of 1.45 below one of .55
+        let mut kernel = grid(3, 2);
+        wish(&mut kernel, 1.0);
+        for node in 0..kernel.nodes.len() {
+            if !kernel.held[node] {
+                kernel.nodes[node][1] += 0.45;
+            }
+        }
+        assert!(evenness(&kernel, 1) < EVEN);
+        level_worst(&mut kernel, 1.0);
+        let even = all(&kernel, |quad| evenness(&kernel, quad));
+        assert!(least(&even) >= EVEN, "{even:?}");
+    }
+}
