@@ -137,8 +137,8 @@ fn node_at(graph: &mut Graph, hub: u32, end: u32, reach_m: f64) -> Option<u32> {
     graph.bend(edge, Bend::At(graph.measure.on_grid(place)), 1.0)
 }
 
-/// Gives one side a corner near the tip, away from the other side: at a new node, or at its end if no
-/// third line meets it there.
+/// Gives one side that is no outline a corner near the tip, away from the other side: at a new node, or at
+/// its end if no third line meets it there.
 fn turn_corner(
     graph: &mut Graph,
     blunt: &Blunt,
@@ -148,6 +148,10 @@ fn turn_corner(
 ) -> Option<()> {
     let (hub, end) = (tip.hub, sides.goes);
     let edge = graph.find(hub, end)?;
+    // a tip of the domain would bulge out of it
+    if graph.edges[edge as usize].is_rim() {
+        return None;
+    }
     let (o, a) = (graph.metres(hub), graph.metres(end));
     let length = distance(o, a) / graph.size_at_m(hub);
     let is_long = length > BENT;
