@@ -61,7 +61,7 @@ const MOVEMENT: f64 = 0.3;
 /// A fourth corner turns by so much more than what counts as a corner, degrees:
 /// relaxation takes some of it back.
 const MORE_DEG: f64 = 10.0;
-/// Where corners are blunter than this, degrees, a triangle would have to bulge for one.
+/// Where corners are blunter than this, degrees, a face would have to bulge for one.
 const CORNER_MAX_DEG: f64 = 45.0;
 /// It lies between these shares of the way along its side.
 const MIDDLE: [f64; 2] = [0.3, 0.7];
@@ -372,15 +372,10 @@ fn sharpest_deg(hub: Xy, ends: &[Xy]) -> f64 {
     gaps_deg(&mut bearings).fold(360.0, f64::min)
 }
 
-/// True if a triangle is thin enough for a fourth corner.
-fn wants_corner(graph: &Graph, even: &Even, face: &Face) -> bool {
-    face.width <= even.triangle && graph.measure.corner_deg <= CORNER_MAX_DEG
-}
-
 /// Gives a thin triangle with three edges a corner in the middle of a side, the longest that may have
 /// one.
 fn bend_side(graph: &mut Graph, even: &Even, face: &Face) -> Option<()> {
-    if !wants_corner(graph, even, face) {
+    if face.width > even.triangle {
         return None;
     }
     let mut sides: SmallVec<[(f64, u32, u32); 3]> = SmallVec::new();
@@ -394,7 +389,7 @@ fn bend_side(graph: &mut Graph, even: &Even, face: &Face) -> Option<()> {
     sides.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     sides.into_iter().find_map(|(length_m, edge, from)| {
         let to = graph.edges[edge as usize].other(from);
-        let p = corner_beside(graph, graph.metres(from), graph.metres(to), 0.5);
+        let p = corner_beside(graph, graph.metres(from), graph.metres(to), 0.5)?;
         if !leaves_room(graph, even, edge, from, p) {
             return None;
         }
@@ -423,7 +418,7 @@ fn leaves_room(graph: &Graph, even: &Even, edge: u32, from: u32, p: Point) -> bo
 /// Makes the one node of a thin triangle with four edges that is no corner one, by moving it out.
 fn raise_node(graph: &mut Graph, even: &Even, face: &Face) -> Option<()> {
     let corner_deg = graph.measure.corner_deg;
-    if !wants_corner(graph, even, face) || corners(graph, &face.walk, corner_deg) != 3 {
+    if face.width > even.triangle || corners(graph, &face.walk, corner_deg) != 3 {
         return None;
     }
     let at = |k: usize| graph.metres(face.walk[k % 4].1);
@@ -434,9 +429,8 @@ fn raise_node(graph: &mut Graph, even: &Even, face: &Face) -> Option<()> {
         return None;
     }
     let (a, o, b) = (at(flat + 3), at(flat), at(flat + 1));
-    let along = (o[0] - a[0]) * (b[0] - a[0]) + (o[1] - a[1]) * (b[1] - a[1]);
-    let t = along / distance(a, b).powi(2);
-    let p = corner_beside(graph, a, b, t.clamp(MIDDLE[0], MIDDLE[1]));
+    let t = to_segment(o, a, b).1;
+    let p = corner_beside(graph, a, b, t.clamp(MIDDLE[0], MIDDLE[1]))?;
     let place = graph.measure.metres(p);
     worst_shape(graph, even, [node, node], place)?;
     if !graph.shift(node, p, even.share) {
@@ -446,13 +440,18 @@ fn raise_node(graph: &mut Graph, even: &Even, face: &Face) -> Option<()> {
     Some(())
 }
 
-/// The place to the right of the way from `a` to `b`, at `t` of it, over which a walk turns at a corner.
-pub(super) fn corner_beside(graph: &Graph, a: Xy, b: Xy, t: f64) -> Point {
+/// The place to the right of the way from `a` to `b`, at `t` of it, over which a walk turns at a corner;
+/// none where corners are too blunt.
+pub(super) fn corner_beside(graph: &Graph, a: Xy, b: Xy, t: f64) -> Option<Point> {
+    if graph.measure.corner_deg > CORNER_MAX_DEG {
+        return None;
+    }
     // at a height h over a side of length 1: atan(h / t) + atan(h / (1 - t)) = turn
     let tan = (2.0 * half_turn(graph)).tan();
     let height = ((1.0 + 4.0 * tan * tan * t * (1.0 - t)).sqrt() - 1.0) / (2.0 * tan);
     let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
-    (graph.measure).on_grid([a[0] + t * dx + height * dy, a[1] + t * dy - height * dx])
+    let place = [a[0] + t * dx + height * dy, a[1] + t * dy - height * dx];
+    Some(graph.measure.on_grid(place))
 }
 
 /// Half of the turn of a fourth corner, radians.

@@ -10,6 +10,7 @@ use crate::cleanup::even::corner_beside;
 use crate::cleanup::graph::Graph;
 use crate::cleanup::measure::PRIORITY_RANK;
 use crate::cleanup::measure::distance;
+use crate::cleanup::measure::to_segment;
 use crate::cleanup::operate::Bend;
 use crate::cleanup::steps::Step;
 use crate::cleanup::wedges::Wedge;
@@ -155,36 +156,33 @@ fn turn_corner(
     let (o, a) = (graph.metres(hub), graph.metres(end));
     let length = distance(o, a) / graph.size_at_m(hub);
     let is_long = length > BENT;
-    let (beyond, t) = if is_long {
-        (end, (blunt.corner / length).min(0.5))
+    let (b, t) = if is_long {
+        (a, (blunt.corner / length).min(0.5))
     } else {
-        if graph.degree(end) != 2 || graph.is_on_rim(end) || length < NEAREST {
+        if graph.degree(end) != 2 || length < NEAREST {
             return None;
         }
         let beyond = (graph.neighbours(end).into_iter()).find(|&it| it != hub)?;
         let b = graph.metres(beyond);
-        let along = (a[0] - o[0]) * (b[0] - o[0]) + (a[1] - o[1]) * (b[1] - o[1]);
-        (beyond, along / distance(o, b).powi(2))
+        let t = to_segment(a, o, b).1;
+        if !(MIDDLE[0]..=MIDDLE[1]).contains(&t) {
+            return None;
+        }
+        (b, t)
     };
-    if !is_long && !(MIDDLE[0]..=MIDDLE[1]).contains(&t) {
-        return None;
-    }
-    let b = graph.metres(beyond);
     let is_left = cross(o, a, graph.metres(sides.stays)) > 0.0;
     let p = if is_left {
-        corner_beside(graph, o, b, t)
+        corner_beside(graph, o, b, t)?
     } else {
-        corner_beside(graph, b, o, 1.0 - t)
+        corner_beside(graph, b, o, 1.0 - t)?
     };
-    let is_done = if is_long {
-        graph.bend(edge, Bend::At(p), share).is_some()
-    } else {
-        graph.shift(end, p, share)
-    };
-    if !is_done {
-        return None;
-    }
     let place = graph.measure.metres(p);
-    graph.note("cornered", p, cross(o, b, place).abs() / distance(o, b));
+    let moved_m = if is_long {
+        graph.bend(edge, Bend::At(p), share)?;
+        to_segment(place, o, b).0
+    } else {
+        graph.shift(end, p, share).then_some(distance(a, place))?
+    };
+    graph.note("cornered", p, moved_m);
     Some(())
 }
