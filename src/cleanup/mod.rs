@@ -54,7 +54,7 @@
 //!    done at once (`finish`); what the input alone tells, while bands are joined. [`rooms`] looks afterwards whether a sub-domain with room for
 //!    elements was lost; that is measured, not promised.
 //!
-//! Steps 6, 7 and 5 run twice. Steps 1 to 4 run first with half of the tolerance, then with more of it, then with all: what
+//! Steps 6, 7 and 5 run twice. Steps 1 to 4 run first with half of the tolerance, then with most of it: what
 //! needs much movement is done only where nothing else helps. `operate` holds the operations,
 //! `attempt` takes back what was tried together and failed, `clear` is the exact test, `stations`
 //! and `measure` keep the books of stretches, `graph`, `edge`, `index` and `cells` are the graph.
@@ -244,7 +244,9 @@ struct Pass {
     thin: Thin,
 }
 /// With half of the tolerance, which leaves 99 % of the lines within a quarter of the size: nearly
-/// all room is made here.
+/// all room is made here. (Measured on twelve cities: a pass with a little more of it, before the one with most, gains
+/// nothing, for a tenth of the time. Faces .25 wide closed lay 99 % of the lines .003 of the size farther away, for
+/// cells that grow by less than .5 %.)
 const GENTLE: Pass = Pass {
     narrow: Narrow {
         edge: 0.25,
@@ -258,60 +260,40 @@ const GENTLE: Pass = Pass {
         share: 0.5,
     },
     thin: Thin {
-        width: 0.25,
+        width: 0.22,
         triangle: 0.29,
         reach: 0.5,
         share: 0.5,
         drops_loops: false,
     },
 };
-/// With a little more of it, for what is much too narrow. (.7 leaves 2 to 8 % larger cells, but
-/// more than 1 % of the lines of five cities beyond a quarter of the size.)
-const FIRM: Pass = Pass {
-    narrow: Narrow {
-        edge: 0.25,
-        gap: 0.18,
-        end: 0.25,
-        share: 0.53,
-    },
-    zip: Zip {
-        below_deg: 20.0,
-        gap: 0.3,
-        share: 0.53,
-    },
-    thin: Thin {
-        width: 0.2,
-        triangle: 0.29,
-        reach: 0.5,
-        share: 0.53,
-        drops_loops: false,
-    },
-};
-/// With all of it, but only for what no mesh could bear.
+/// With most of it, but only for what no mesh could bear. (Measured on the same: with all of it the .1 %
+/// quantile of the time-step proxy grows by .6 %, but the displacement that 99 % of the lines stay below by
+/// .0045 of the size.)
 const LAST: Pass = Pass {
     narrow: Narrow {
         edge: 0.2,
         gap: 0.1,
         end: 0.25,
-        share: 1.0,
+        share: 0.8,
     },
     zip: Zip {
         below_deg: 10.0,
         gap: 0.2,
-        share: 1.0,
+        share: 0.8,
     },
     thin: Thin {
         width: 0.15,
         triangle: 0.2,
         reach: 0.5,
-        share: 1.0,
+        share: 0.8,
         drops_loops: true,
     },
 };
 /// What is merged because relaxation could not push it apart.
 const STUCK: Narrow = Narrow {
     edge: 0.3,
-    gap: 0.2,
+    gap: 0.25,
     end: 0.25,
     share: 1.0,
 };
@@ -352,11 +334,14 @@ const EVEN: Even = Even {
     triangle: 0.28,
     share: 1.0,
 };
-/// More than what should hold in the end: steps are damped, and lines are in each other's way.
+/// More than what should hold in the end: steps are damped, and lines are in each other's way. (Measured
+/// on the same: a gap of .45 lowers the .1 % quantiles of the time-step proxy by 2.8 % and of edges by 1.7 %, the 1 %
+/// quantile of shapes by .007, and the displacement that 99 % of the lines stay below by .002 of the size;
+/// .55 raises the first two by 1 %, but the displacement by .007.)
 const WANTED: Wanted = Wanted {
-    edge: 0.5,
-    gap: 0.45,
-    shares: [0.5, 0.9],
+    edge: 0.45,
+    gap: 0.5,
+    shares: [0.5, 0.8],
     rounds: 8,
 };
 /// Zipping, closing and merging make work for each other; more rounds than this find hardly any.
@@ -370,7 +355,7 @@ fn make_room(graph: &mut Graph) {
     graph.index.take_nodes(&graph.at);
     simplify::simplify(graph, &FINE, &graph.nodes());
     let least = graph.measure.min_edge;
-    for pass in [&GENTLE, &FIRM, &LAST] {
+    for pass in [&GENTLE, &LAST] {
         let narrow = Narrow {
             edge: pass.narrow.edge.max(least),
             ..pass.narrow
