@@ -408,6 +408,6 @@ pub fn parity_options(match_sides: f64) -> parity::Options {
         rounds_max: 20,
         climb_max: 20,
         gap_enough: 0.01,
-        neighbourhoods_max: 100,
+        neighbourhoods_max: 250,
     }
 }
