@@ -39,6 +39,9 @@ pub mod boundary;
 /// One sub-domain -> (Patch, Method).
 pub mod meshing;
 
+/// Trial meshes + Arrangement -> Arrangement whose nodes lie where elements are better.
+pub mod settling;
+
 /// What is parked between phases; the journal of a run.
 pub mod spill;
 

@@ -120,6 +120,7 @@ impl Joined<'_> {
                 ..moved.0
             },
             findings: left.0,
+            was_on: self.is_on,
         }
     }
 }

@@ -103,6 +103,7 @@ pub mod rooms;
 pub mod rules;
 mod separate;
 mod sharp;
+pub mod shifts;
 mod simplify;
 mod stations;
 pub mod steps;
@@ -196,6 +197,8 @@ pub struct Cleaned {
     pub tally: Tally,
     /// What is still too short or too sharp.
     pub findings: Vec<Finding>,
+    /// False if clean-up was to change nothing: no tolerance, or all was clean already.
+    pub was_on: bool,
 }
 
 /// Edges shorter than this share of the mesh size are findings, unless the job says otherwise.

@@ -30,11 +30,17 @@ type Drafts = SmallVec<[Draft; 6]>;
 impl Graph<'_> {
     /// Moves node `v` to the free point `p`. `share`: of the tolerance.
     pub(super) fn shift(&mut self, v: u32, p: Point, share: f64) -> bool {
+        self.shift_if(v, p, |graph| graph.star_fits(v, p, share))
+    }
+
+    /// Moves node `v` to the free point `p` if its stretches, with the stations that they would have,
+    /// fit there.
+    pub(super) fn shift_if(&mut self, v: u32, p: Point, fits: impl Fn(&Self) -> bool) -> bool {
         if p == self.point(v) || !self.is_free(v) || !self.reaches(p) {
             return false;
         }
         let stations = self.restation_star(v, self.measure.metres(p));
-        if !self.star_fits(v, p, share) || !self.star_is_clear(v, p, &self.neighbours(v), Some(p)) {
+        if !fits(self) || !self.star_is_clear(v, p, &self.neighbours(v), Some(p)) {
             self.set_stations(&stations);
             return false;
         }

@@ -214,7 +214,7 @@ fn push_m(
 }
 
 /// On the outline, only the part of a push along it.
-fn along_rim(graph: &Graph, node: u32, push: Xy) -> Xy {
+pub(super) fn along_rim(graph: &Graph, node: u32, push: Xy) -> Xy {
     let star = graph.star[node as usize].iter();
     let rim: Vec<u32> = star
         .copied()

@@ -147,6 +147,11 @@ pub struct BuildArgs {
     /// sizes; 0 for none. Default: 0.8.
     #[arg(long)]
     pub longest_rung: Option<f64>,
+    /// Rounds in which nodes of lines move to where elements are better, within a quarter of the size
+    /// (or half of the tolerance); each takes about as long as meshing. 0: they stay where clean-up
+    /// left them. Default: 2.
+    #[arg(long, value_name = "ROUNDS")]
+    pub settle: Option<u32>,
     /// An earlier mesh of nearly the same lines: counts far from what changed stay as they were.
     #[arg(long, value_name = "MESH")]
     pub previous: Option<PathBuf>,

@@ -13,6 +13,7 @@ use crate::pipeline::job::Job;
 use crate::pipeline::job::LONGEST_RUNG;
 use crate::pipeline::job::MATCH_SIDES;
 use crate::pipeline::job::SEAM_BUDGET_QUADS;
+use crate::settling;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -38,6 +39,7 @@ struct JobFile {
     tile: Option<f64>,
     seam_budget: Option<u32>,
     longest_rung: Option<f64>,
+    settle: Option<u32>,
     match_sides: Option<f64>,
     previous: Option<PathBuf>,
     threads: Option<usize>,
@@ -159,6 +161,7 @@ pub fn job(args: &BuildArgs) -> Result<Job, String> {
             .or(file.seam_budget)
             .unwrap_or(SEAM_BUDGET_QUADS),
         longest_rung: (args.longest_rung.or(file.longest_rung)).unwrap_or(LONGEST_RUNG),
+        settle: (args.settle.or(file.settle)).unwrap_or(settling::ROUNDS),
         match_sides: (args.match_sides.or(file.match_sides)).unwrap_or(MATCH_SIDES),
         previous: args.previous.clone().or(file.previous),
         threads: args.threads.or(file.threads).unwrap_or(0),
@@ -256,6 +259,12 @@ fn validate(job: &Job) -> Result<(), String> {
         return Err(format!(
             "longest_rung is {}: it must lie in 0..2 sizes",
             job.longest_rung
+        ));
+    }
+    if job.settle > 10 {
+        return Err(format!(
+            "settle is {}: more than 10 rounds gain nothing",
+            job.settle
         ));
     }
     if job.seam_budget_quads < 1000 {

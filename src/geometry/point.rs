@@ -3,6 +3,20 @@
 /// Metres relative to the origin of the [`Grid`](crate::geometry::grid::Grid): `[x, y]`.
 pub type Xy = [f64; 2];
 
+const HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// Eight directions of unit length, for compass searches.
+pub const COMPASS: [Xy; 8] = [
+    [1.0, 0.0],
+    [HALF, HALF],
+    [0.0, 1.0],
+    [-HALF, HALF],
+    [-1.0, 0.0],
+    [-HALF, -HALF],
+    [0.0, -1.0],
+    [HALF, -HALF],
+];
+
 /// A point of the grid, in cells (1 mm unless the job says otherwise).
 ///
 /// Both coordinates stay within ±[`LIMIT`]; the order is by `x`, then `y`.

@@ -5,7 +5,8 @@
 //! none): the *worth* of a quad, which is its shape unless it is small or has a short side, and its
 //! *evenness*, the least ratio of areas with its neighbours.
 
-use crate::geometry::point::Xy;
+use crate::geometry::point::COMPASS;
+use crate::geometry::quad::Measured;
 use crate::geometry::quad::area;
 use crate::geometry::quad::distance;
 use crate::geometry::quad::measure;
@@ -63,25 +64,33 @@ const SPARED: f64 = 0.35;
 /// twentieth of the size nothing can be large, and trying costs a fifth of the time there.
 const COARSER: f64 = 2.0;
 
-/// The scaled Jacobian, less if the quad is small or has a short side.
+/// The [`worth_of`] a quad, sides on the outline left out.
 pub(crate) fn worth(kernel: &Kernel, quad: u32, size_m: f64) -> f64 {
     let measured = measure(&kernel.corners(quad));
-    let shape = measured.scaled_jacobian;
-    if shape > 0.0 {
-        let shortest_m = (0..4)
-            .filter(|&k| kernel.twins[quad as usize][k] != NONE)
-            .map(|k| measured.sides_m[k])
-            .fold(f64::INFINITY, f64::min);
-        let scales = kernel.quads[quad as usize].map(|node| kernel.scale[node as usize]);
-        let coarsest = scales.into_iter().fold(f64::INFINITY, f64::min);
-        let size_m = size_m.min(COARSER / coarsest.sqrt());
-        let side = LONG * shortest_m / size_m;
-        shape
-            .min(LARGE * measured.hydraulic_size_m / size_m)
-            .min((side * side / ENOUGH).max(side.min(SPARED)))
-    } else {
-        shape
+    if measured.scaled_jacobian <= 0.0 {
+        return measured.scaled_jacobian;
     }
+    let shortest_m = (0..4)
+        .filter(|&k| kernel.twins[quad as usize][k] != NONE)
+        .map(|k| measured.sides_m[k])
+        .fold(f64::INFINITY, f64::min);
+    let scales = kernel.quads[quad as usize].map(|node| kernel.scale[node as usize]);
+    let coarsest = scales.into_iter().fold(f64::INFINITY, f64::min);
+    let size_m = size_m.min(COARSER / coarsest.sqrt());
+    worth_of(&measured, shortest_m, size_m)
+}
+
+/// The scaled Jacobian, less if the quad is small for its wished size or its shortest side that
+/// counts is short.
+pub(crate) fn worth_of(measured: &Measured, shortest_m: f64, size_m: f64) -> f64 {
+    let shape = measured.scaled_jacobian;
+    if shape <= 0.0 {
+        return shape;
+    }
+    let side = LONG * shortest_m / size_m;
+    shape
+        .min(LARGE * measured.hydraulic_size_m / size_m)
+        .min((side * side / ENOUGH).max(side.min(SPARED)))
 }
 
 /// The least area over the greatest of a quad and one of its neighbours.
@@ -181,20 +190,6 @@ fn level(kernel: &mut Kernel, node: u32, size_m: f64) -> f64 {
 /// A node may not come nearer to a neighbour than this share of the wished edge length to mend a
 /// quad: shape alone would let two nodes fall together.
 const APART: f64 = 0.18;
-
-const HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
-
-/// Eight directions.
-const COMPASS: [Xy; 8] = [
-    [1.0, 0.0],
-    [HALF, HALF],
-    [0.0, 1.0],
-    [-HALF, HALF],
-    [-1.0, 0.0],
-    [-HALF, -HALF],
-    [0.0, -1.0],
-    [HALF, -HALF],
-];
 
 /// Moves one node where `better`, given the best value until now, finds a better one; returns the best.
 fn compass(

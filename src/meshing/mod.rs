@@ -108,6 +108,8 @@ use crate::meshing::score::Score;
 use crate::meshing::triangulate::triangulate;
 use crate::meshing::visits::Visits;
 
+pub(crate) use crate::meshing::lift::worth_of;
+
 /// What may be tried.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {

@@ -1,5 +1,6 @@
 //! What meshing gets and gives: the discretised walks of one sub-domain, and its mesh.
 
+use crate::boundary::walks::Walks;
 use crate::geometry::point::Xy;
 
 /// The discretised walks of one sub-domain.
@@ -21,6 +22,20 @@ pub struct Loops {
     pub lattice_origin: Option<Xy>,
     /// For each walk, for each of its edges `walk[k] -> walk[k + 1]`: true if it lies on a seam.
     pub on_seam: Vec<Vec<bool>>,
+}
+
+impl Loops {
+    /// The walks of `boundary`, with this wished edge length.
+    pub fn of(walked: &Walks, size_m: f64) -> Loops {
+        let is_part = walked.on_seam.iter().flatten().any(|&it| it);
+        Loops {
+            nodes: walked.nodes.clone(),
+            walks: walked.walks.clone(),
+            size_m,
+            lattice_origin: is_part.then_some([0.0, 0.0]),
+            on_seam: walked.on_seam.clone(),
+        }
+    }
 }
 
 /// How a patch was made. The order is that of the tables in the report.

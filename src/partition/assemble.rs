@@ -107,6 +107,27 @@ fn place(domain: &Domain, arrangement: &Arrangement, node: u32) -> Xy {
     domain.grid.projected_m(arrangement.points[node as usize])
 }
 
+/// Measures all areas again, where nodes of the arrangement were moved.
+pub fn remeasure(domain: &Domain, arrangement: &Arrangement, partition: &mut Partition) {
+    let cell2 = domain.grid.cell_m * domain.grid.cell_m;
+    let curves = &partition.curves;
+    for subdomain in &mut partition.subdomains {
+        let halves = subdomain.walks.iter().flatten();
+        let area2 = halves.map(|&half| {
+            let nodes = &curves[(half >> 1) as usize].nodes;
+            let points = nodes.iter().map(|&it| arrangement.points[it as usize]);
+            let points: Vec<Point> = points.collect();
+            let cross = |pair: &[Point]| {
+                i128::from(pair[0].x) * i128::from(pair[1].y)
+                    - i128::from(pair[0].y) * i128::from(pair[1].x)
+            };
+            let along: i128 = points.windows(2).map(cross).sum();
+            if half & 1 == 0 { along } else { -along }
+        });
+        subdomain.area_m2 = 0.5 * area2.sum::<i128>() as f64 * cell2;
+    }
+}
+
 /// Twice the signed area of a walk, cells². Exact: the terms stay below 2^60.
 pub(super) fn area2(arrangement: &Arrangement, walk: &[HalfEdge]) -> i128 {
     let cross = |half: HalfEdge| {

@@ -53,6 +53,7 @@ use crate::partition::error::Error;
 use crate::partition::subdomains::Partition;
 
 pub use assemble::assemble;
+pub use assemble::remeasure;
 pub use locate::sides;
 pub use locate::subdomains_at;
 pub use star::HalfEdge;

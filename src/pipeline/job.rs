@@ -6,6 +6,7 @@ use crate::cleanup::rules::Rule;
 use crate::cleanup::rules::SmallLoops;
 use crate::cleanup::steps::Step;
 use crate::ingest::CrsChoice;
+use crate::settling;
 use std::path::PathBuf;
 
 /// What to build, from what, how fine and where to.
@@ -42,6 +43,8 @@ pub struct Job {
     pub seam_budget_quads: u32,
     /// Narrow places are cut into blocks by rungs up to this long, sizes; 0 for none.
     pub longest_rung: f64,
+    /// Rounds in which nodes of lines move to where elements are better; 0 for none.
+    pub settle: u32,
     /// What it is worth that the counts of a few-sided sub-domain fit a pattern, in the unit of what
     /// counts cost; 0 for parity alone.
     pub match_sides: f64,
@@ -93,6 +96,7 @@ impl Job {
             without: Vec::new(),
             seam_budget_quads: SEAM_BUDGET_QUADS,
             longest_rung: LONGEST_RUNG,
+            settle: settling::ROUNDS,
             match_sides: MATCH_SIDES,
             previous: None,
             threads: 0,
@@ -144,6 +148,7 @@ impl Job {
             "without": self.without.iter().map(|step| step.name()).collect::<Vec<_>>(),
             "seam_budget_quads": self.seam_budget_quads,
             "longest_rung": self.longest_rung,
+            "settle": self.settle,
             "match_sides": self.match_sides,
         })
         .to_string()

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! A  per tile, in parallel     ingest, noding                        (tiles)
-//! B  the whole city            cleanup, partition, seams, intervals, parity   (plan)
+//! B  the whole city            cleanup, partition, seams, intervals, parity   (plan), settling (settle)
 //! C  per sub-domain, streamed  boundary, meshing, chunk              (patches, ordered)
 //! ```
 //!
@@ -31,6 +31,7 @@ mod previous;
 pub mod progress;
 pub mod refusal;
 mod report;
+mod settle;
 mod shortest;
 mod tiles;
 
@@ -72,12 +73,13 @@ pub fn build(job: &Job, listener: Listener) -> Result<Outcome, Error> {
     made
 }
 
-/// What a build will cost, from its plan: all but the meshing is done to know it.
+/// What a build will cost, from its plan: all but settling and meshing is done to know it.
 pub fn estimate(job: &Job, listener: Listener) -> Result<Estimate, Error> {
     pool(job).install(|| {
         let watch = Stopwatch::new(listener);
         let plan = plan::plan(job, &watch, None)?;
         Ok(Estimate::new(
+            job,
             &plan,
             watch.stages(),
             rayon::current_num_threads(),
@@ -89,6 +91,7 @@ fn build_here(job: &Job, listener: Listener) -> Result<Outcome, Error> {
     let watch = Stopwatch::new(listener);
     let partial = chunk::writer::partial_of(&job.output);
     let mut plan = plan::plan(job, &watch, job.resume.then_some(partial.as_path()))?;
+    settle::settle(job, &mut plan, &watch)?;
     let writer = begin(job, &plan, &partial)?;
     watch.stage("frame", 1, |_| -> Result<_, Error> {
         let frame = frame::frame(&plan);

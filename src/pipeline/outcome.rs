@@ -135,12 +135,14 @@ const ROWS_NEAR_LINES: f64 = 8.0;
 
 impl Estimate {
     /// The cost of `plan`, which itself took `stages`, on `workers` cores.
-    pub(super) fn new(plan: &Plan, stages: Vec<StageTime>, workers: usize) -> Estimate {
+    pub(super) fn new(job: &Job, plan: &Plan, stages: Vec<StageTime>, workers: usize) -> Estimate {
         let quads = plan.quads_expected();
         let boundary_nodes = plan.first[plan.first.len() - 1];
         let near = (boundary_nodes as f64 * ROWS_NEAR_LINES).min(quads as f64);
         let far = quads as f64 - near;
-        let meshing = near * SECONDS_A_QUAD[0] + far * SECONDS_A_QUAD[1];
+        // each round of settling meshes on trial
+        let times = f64::from(1 + job.settle);
+        let meshing = times * (near * SECONDS_A_QUAD[0] + far * SECONDS_A_QUAD[1]);
         let planned: f64 = stages.iter().map(|it| it.seconds).sum();
         let disk = quads as f64 * BYTES_A_QUAD + boundary_nodes as f64 * BYTES_A_BOUNDARY_NODE;
         Estimate {

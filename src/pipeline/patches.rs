@@ -63,14 +63,7 @@ fn finished_chunks(writer: &Writer) -> Vec<ChunkReceipt> {
 fn mesh_one(plan: &Plan, subdomain: SubdomainId) -> PatchRecord {
     let walked = walks(&plan.site(), subdomain);
     let boundary = walked.ids.iter().map(|&id| id as u32).collect();
-    let is_part = walked.on_seam.iter().flatten().any(|&it| it);
-    let loops = Loops {
-        nodes: walked.nodes,
-        walks: walked.walks,
-        size_m: plan.sizes.default_m,
-        lattice_origin: is_part.then_some([0.0, 0.0]),
-        on_seam: walked.on_seam,
-    };
+    let loops = Loops::of(&walked, plan.sizes.default_m);
     match meshing::mesh(&loops, &meshing::Options::all()) {
         Ok(meshed) => PatchRecord::new(subdomain, boundary, meshed.patch),
         // `partition` and `boundary` promise planar, even walks: this is our mistake, not the user's.

@@ -29,6 +29,7 @@ use crate::pipeline::job::Job;
 use crate::pipeline::previous;
 use crate::pipeline::progress::Stopwatch;
 use crate::pipeline::refusal;
+use crate::pipeline::settle::Unsettled;
 use crate::pipeline::tiles;
 use crate::rungs;
 use crate::seams;
@@ -49,6 +50,8 @@ pub struct Plan {
     pub city: Parked,
     /// First global ids of nodes on curves.
     pub first: Vec<u64>,
+    /// Set while nodes may still move to better places.
+    pub unsettled: Option<Unsettled>,
 }
 
 impl Plan {
@@ -97,6 +100,7 @@ struct Cleaned {
     dropped: Vec<Dropped>,
     changes: Vec<Change>,
     tally: Tally,
+    unsettled: Unsettled,
 }
 
 /// Makes the plan of `job`, or goes on with the one that is parked in `resume_from`.
@@ -113,9 +117,12 @@ pub(super) fn plan(
         ..cleaning(job, &domain)?
     };
     let parked = resume_from.and_then(|folder| spill::fetch(folder, &key(job, &domain)));
-    let city = match parked {
-        Some(city) => city,
-        None => city(job, &domain, &sizes, &cleaning, watch, findings)?,
+    let (city, unsettled) = match parked {
+        Some(city) => (city, None),
+        None => {
+            let (city, unsettled) = city(job, &domain, &sizes, &cleaning, watch, findings)?;
+            (city, Some(unsettled))
+        }
     };
     let points = city.arrangement.points.len();
     let first = boundary::numbering(&city.partition, &city.balance.counts, points);
@@ -131,6 +138,7 @@ pub(super) fn plan(
         cleaning,
         city,
         first,
+        unsettled,
     })
 }
 
@@ -156,7 +164,7 @@ fn city(
     cleaning: &cleanup::Options,
     watch: &Stopwatch,
     mut findings: Vec<Finding>,
-) -> Result<Parked, Error> {
+) -> Result<(Parked, Unsettled), Error> {
     let cleaned = clean(job, domain, sizes, cleaning, watch, &mut findings)?;
     let (arrangement, partition) = cut(
         job,
@@ -167,7 +175,7 @@ fn city(
         &mut findings,
     )?;
     let (goals, balance) = balance(job, domain, sizes, &arrangement, &partition, watch)?;
-    Ok(Parked {
+    let city = Parked {
         arrangement,
         partition,
         goals,
@@ -176,7 +184,8 @@ fn city(
         changes: cleaned.changes,
         tally: cleaned.tally,
         findings,
-    })
+    };
+    Ok((city, cleaned.unsettled))
 }
 
 /// The line work, and the places that an earlier clean-up had to leave, if there was one.
@@ -275,7 +284,6 @@ fn clean(
     let before = noded.clone();
     let cleaned = watch.stage("cleanup", 1000, |count| -> Result<_, Error> {
         let made = tiles::clean(domain, sizes, noded, options, count);
-        findings.extend(made.findings);
         let mut dropped: Vec<Dropped> = clipped.iter().map(clipped_stretch).collect();
         dropped.extend(made.dropped);
         let cleaned = Cleaned {
@@ -283,6 +291,10 @@ fn clean(
             dropped,
             changes: made.changes,
             tally: made.tally,
+            unsettled: Unsettled {
+                left: made.findings,
+                may_move: made.was_on,
+            },
         };
         let note = format!(
             "{} nodes, {} edges; moved at most {:.2} m",

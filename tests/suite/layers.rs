@@ -31,6 +31,7 @@ const LAYERS: &[Layer] = &[
     Layer("parity", Pure, &["highs"]),
     Layer("boundary", Pure, &[]),
     Layer("meshing", Pure, &["spade"]),
+    Layer("settling", Pure, &[]),
     Layer("spill", Door, &["bincode", "memmap2"]),
     Layer("chunk", Door, &["flatbuffers", "memmap2"]),
     Layer("check", Door, &[]),

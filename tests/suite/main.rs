@@ -20,6 +20,7 @@ mod pipeline;
 mod report;
 mod rungs;
 mod seams;
+mod settling;
 mod spill;
 mod synth;
 mod tidy;

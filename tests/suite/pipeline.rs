@@ -20,6 +20,7 @@ use polder::pipeline::job::Job;
 use polder::pipeline::ordered::IN_FLIGHT_PER_WORKER;
 use polder::pipeline::ordered::in_order;
 use polder::pipeline::refusal::explain;
+use polder::settling;
 use polder::synth::City;
 use polder::synth::city;
 use std::fs;
@@ -215,6 +216,30 @@ fn same_bytes_for_any_threads_tiles_and_run() {
         }
         assert_eq!(first.len(), again.len());
     }
+}
+
+/// At a size as coarse as the blocks, the poorest quads are those that no interior node can help.
+#[test]
+fn settling_helps_the_poorest_cells() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    write_city(&city(120, 5), &at.join("city.geojson"));
+    let [never, usual] = [0, settling::ROUNDS].map(|settle| {
+        let job = Job {
+            settle,
+            force: true,
+            ..Job::usual(at.join("city.geojson"), at.join("a.polder"), 40.0)
+        };
+        let outcome = build(&job, &|_| {}).unwrap();
+        assert!(outcome.verdict.holds());
+        let quality = outcome.verdict.quality;
+        [
+            quality.scaled_jacobian.quantile(0.01),
+            quality.scaled_jacobian.mean(),
+        ]
+    });
+    assert!(usual[0] > never[0] + 0.01, "{never:?} {usual:?}");
+    assert!(usual[1] > never[1], "{never:?} {usual:?}");
 }
 
 #[test]

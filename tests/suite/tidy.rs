@@ -78,6 +78,7 @@ fn every_stage_has_a_contract_page() {
         "parity",
         "boundary",
         "meshing",
+        "settling",
     ] {
         let page = std::fs::read_to_string(format!("src/{stage}/mod.rs")).unwrap();
         for heading in ["# Promises", "# Needs", "# Method", "# Cost", "# Not here"] {

@@ -1,0 +1,211 @@
+//! Nodes of clean line work, moved one after the other as a later stage asks, within what clean-up
+//! promises: topology stays, and each stretch within its share of the tolerance.
+
+use crate::cleanup::Options;
+use crate::cleanup::SHARP_DEG;
+use crate::cleanup::audit;
+use crate::cleanup::changes::Tally;
+use crate::cleanup::edge::as_cut;
+use crate::cleanup::graph::Graph;
+use crate::cleanup::graph::Stand;
+use crate::cleanup::importance::is_rim_corner;
+use crate::cleanup::leftovers;
+use crate::cleanup::measure::Measure;
+use crate::cleanup::relax::along_rim;
+use crate::cleanup::sharp;
+use crate::domain::finding::Finding;
+use crate::domain::line::Domain;
+use crate::domain::size::SizeWish;
+use crate::geometry::point::Xy;
+use crate::noding::arrangement::Arrangement;
+use smallvec::SmallVec;
+
+/// Clean line work whose nodes may be shifted.
+pub struct Shifts<'m> {
+    graph: Graph<'m>,
+    /// By edge of the graph, that of the arrangement.
+    edge: Vec<u32>,
+}
+
+/// Hands clean line work to `work`, and takes over where nodes are afterwards. Returns what is still
+/// too short, too narrow or too sharp, or none if nothing was shifted. Ids stay, so points may come
+/// out of their order.
+///
+/// Edges without pieces (seams, rungs) are not lines: their ends stay.
+pub fn shift(
+    domain: &Domain,
+    sizes: &SizeWish,
+    options: &Options,
+    arrangement: &mut Arrangement,
+    tally: &mut Tally,
+    work: impl FnOnce(&mut Shifts),
+) -> Option<Vec<Finding>> {
+    let measure = Measure::new(domain, sizes, options);
+    if !measure.allows_any() {
+        return None;
+    }
+    let mut shifts = Shifts::of(arrangement, &measure);
+    work(&mut shifts);
+    if shifts.graph.at == arrangement.points {
+        return None;
+    }
+    shifts.write(arrangement);
+    let graph = &shifts.graph;
+    let moved = audit::displacements(graph);
+    *tally = Tally {
+        displacement_max_m: moved.displacement_max_m,
+        displacement_p99_m: moved.displacement_p99_m,
+        displacement_max_over_size: moved.displacement_max_over_size,
+        displacement_p99_over_size: moved.displacement_p99_over_size,
+        sharp_angles: [
+            tally.sharp_angles[0],
+            sharp::sharp_angles(arrangement, SHARP_DEG),
+        ],
+        ..std::mem::take(tally)
+    };
+    Some(leftovers::leftovers(graph))
+}
+
+impl<'m> Shifts<'m> {
+    fn of(arrangement: &Arrangement, measure: &'m Measure<'m>) -> Shifts<'m> {
+        let all = 0..arrangement.edges.len() as u32;
+        let (lines, others): (Vec<u32>, Vec<u32>) =
+            all.partition(|&edge| !arrangement.pieces_of(edge).is_empty());
+        let ends = |edge: u32| arrangement.edges[edge as usize];
+        let lengths = lines.iter().map(|&edge| {
+            let [a, b] = ends(edge).map(|node| arrangement.points[node as usize]);
+            a.distance(b)
+        });
+        let mean = lengths.sum::<f64>() / lines.len().max(1) as f64;
+        let mut graph = Graph::without_edges(measure, arrangement.points.clone(), mean, None);
+        for &edge in &lines {
+            let (pieces, inside) = as_cut(arrangement, measure.domain, edge);
+            let id = graph.add(ends(edge), pieces.clone(), inside);
+            // all of them, as they are written back
+            graph.edges[id as usize].pieces = pieces;
+        }
+        graph.index.take_nodes(&graph.at);
+        for node in others.iter().flat_map(|&edge| ends(edge)) {
+            graph.set_stand(node, Stand::Tied);
+        }
+        Shifts { graph, edge: lines }
+    }
+
+    /// How many nodes there are.
+    pub fn nodes(&self) -> u32 {
+        self.graph.at.len() as u32
+    }
+
+    /// Where a node is, local metres.
+    pub fn at_m(&self, node: u32) -> Xy {
+        self.graph.metres(node)
+    }
+
+    /// Least wished edge length of the lines at a node, metres.
+    pub fn size_at_m(&self, node: u32) -> f64 {
+        self.graph.size_at_m(node)
+    }
+
+    /// False if a node has to stay whatever is asked: ends of seams, corners of the outline.
+    pub fn may_move(&self, node: u32) -> bool {
+        self.graph.is_free(node) && !is_rim_corner(&self.graph, node)
+    }
+
+    /// What of a wished move is open to a node: on the outline, the part along it; from grid point to
+    /// grid point. Metres.
+    pub fn open_to(&self, node: u32, by: Xy) -> Xy {
+        let (at, by) = (self.at_m(node), along_rim(&self.graph, node, by));
+        let measure = self.graph.measure;
+        let to = measure.metres(measure.on_grid([at[0] + by[0], at[1] + by[1]]));
+        [to[0] - at[0], to[1] - at[1]]
+    }
+
+    /// Moves a node by so many metres, if the way is clear, and no stretch at it comes farther from
+    /// its edge than `share` of its tolerance, or than it is.
+    pub fn shift(&mut self, node: u32, by: Xy, share: f64) -> bool {
+        let (at, measure) = (self.at_m(node), self.graph.measure);
+        let limits_m = self.limits_m(node, share);
+        let to = measure.on_grid([at[0] + by[0], at[1] + by[1]]);
+        self.graph.shift_if(node, to, |graph| {
+            let place = |end: u32| match end == node {
+                true => measure.metres(to),
+                false => graph.metres(end),
+            };
+            let star = graph.star[node as usize].iter();
+            let edges = star.map(|&edge| &graph.edges[edge as usize]);
+            let stretches = edges.flat_map(|edge| edge.pieces.iter().map(move |it| (edge, it)));
+            stretches.zip(&limits_m).all(|((edge, piece), &limit_m)| {
+                let [a, b] = edge.ends.map(place);
+                measure.deviation_m(piece, a, b) <= limit_m
+            })
+        })
+    }
+
+    /// How far each stretch at a node may be from its edge, in the order of its edges and their pieces.
+    fn limits_m(&self, node: u32, share: f64) -> SmallVec<[f64; 16]> {
+        let (graph, measure) = (&self.graph, self.graph.measure);
+        let star = graph.star[node as usize].iter();
+        let limits_m = star.flat_map(|&edge| {
+            let (a, b) = graph.ends_m(edge);
+            let pieces = graph.edges[edge as usize].pieces.iter();
+            pieces.map(move |piece| {
+                let usual_m = share * measure.tolerance_m[piece.line as usize];
+                usual_m.max(measure.deviation_m(piece, a, b))
+            })
+        });
+        limits_m.collect()
+    }
+
+    fn write(&self, arrangement: &mut Arrangement) {
+        arrangement.points.clone_from(&self.graph.at);
+        for (edge, &id) in self.graph.edges.iter().zip(&self.edge) {
+            let [from, to] = [0, 1].map(|k| arrangement.piece_start[id as usize + k] as usize);
+            let pieces = &mut arrangement.pieces[from..to];
+            debug_assert_eq!(
+                pieces.len(),
+                edge.pieces.len(),
+                "stretches are neither lost nor made"
+            );
+            pieces.copy_from_slice(&edge.pieces);
+            pieces.sort_by(|p, q| p.order(q));
+        }
+    }
+}
+
+/// Checks that no stretch is farther from its edge than half of its tolerance, or than it was, rounding
+/// aside; that corners of the outline stayed, and other nodes of it stayed on it.
+pub fn check(
+    domain: &Domain,
+    sizes: &SizeWish,
+    options: &Options,
+    [before, after]: [&Arrangement; 2],
+) -> Result<(), String> {
+    let measure = Measure::new(domain, sizes, options);
+    let (was, is) = (Shifts::of(before, &measure), Shifts::of(after, &measure));
+    let rounding_m = 2.0 * domain.grid.cell_m;
+    for (one, other) in was.graph.edges.iter().zip(&is.graph.edges) {
+        let [(a, b), (c, d)] = [(&was, one), (&is, other)].map(|(shifts, edge)| {
+            let [a, b] = edge.ends.map(|node| shifts.at_m(node));
+            (a, b)
+        });
+        for (old, new) in one.pieces.iter().zip(&other.pieces) {
+            let half_m = 0.5 * measure.tolerance_m[new.line as usize];
+            let limit_m = half_m.max(measure.deviation_m(old, a, b)) + rounding_m;
+            let away_m = measure.deviation_m(new, c, d);
+            if away_m > limit_m {
+                let line = new.line;
+                return Err(format!(
+                    "line {line} is {away_m} m away, at most {limit_m} m is allowed"
+                ));
+            }
+        }
+    }
+    let moved = |&node: &u32| was.graph.point(node) != is.graph.point(node);
+    match (0..was.nodes())
+        .filter(moved)
+        .find(|&node| is_rim_corner(&was.graph, node))
+    {
+        Some(node) => Err(format!("node {node}, a corner of the outline, has moved")),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,111 @@
+//! Trial meshes + Arrangement -> Arrangement whose nodes lie where the elements around them are better.
+//!
+//! Clean-up pushes nodes and edges apart without knowing what elements will lie between them, and
+//! meshing may move no node of a line. So the poorest elements of dense line work are those that no
+//! node inside a sub-domain can help. Here the nodes of the line work are moved for them.
+//!
+//! # Promises
+//! 1. Topology, ids and counts stay: edges join the same nodes and carry the same lines. Only points
+//!    and the stations of stretches change, so points may be out of their order afterwards.
+//! 2. What clean-up promises of distances holds: no stretch comes farther from its edge than half of its
+//!    tolerance (a quarter of the size), or than clean-up had left it. Corners of the outline and the ends of seams
+//!    and rungs stay; other nodes of the outline move along it.
+//! 3. A node moves by at most [`REACH`] of the size in one round.
+//! 4. The poorest quad of the trial meshes is no poorer afterwards, and no edge becomes shorter than
+//!    the least edge that is asked for.
+//! 5. Same input, same bits. Where clean-up was to change nothing, nothing changes here.
+//!
+//! # Needs
+//! Line work as `cleanup` leaves it, its partition, and counts (`parity`).
+//!
+//! # Method
+//! 1. [`trial`]: each sub-domain is meshed as it will be; kept are the quads at nodes of the line work
+//!    (`rings`), from both sides of each line.
+//! 2. `search`: nodes at quads of little worth (shape, size and shortest side in one number, that of
+//!    `meshing`) are moved by compass search, interior nodes and all other nodes staying, as long as the
+//!    least worth around the node grows. Each step is refused unless [`cleanup::shifts`] finds the way
+//!    clear and all stretches near enough.
+//! 3. The same in a second round, after sub-domains of moderate size that were touched have been meshed anew. (Measured on
+//!    36 runs: the .1 % quantile of the time-step proxy grows by 3.5 %, that of edges by 5 %, the 1 % quantile of
+//!    shapes by .037 and their mean by .002; irregular nodes go from 5.56 to 5.39 %; the displacement that 99 % of the
+//!    lines stay below grows by .009 of the size, but by none where it was a quarter. A third round gains
+//!    a tenth of that. Interior nodes moved along with the others gain nothing more. Up to .4 of the
+//!    size for the poorest: 1.2 % more of the proxy, but .010 more of the displacement.)
+//!
+//! The idea is that of mesh smoothing with boundary nodes on curves (Knupp 2000, algebraic quality
+//! measures; here with a tolerance band in place of the curve).
+//!
+//! # Cost
+//! A round meshes, and a second one what the first one touched: 1 to 1.7 times the time of meshing
+//! in all. Memory: 130 bytes for each quad at a node of the line work or next to one, which follows the
+//! input.
+//!
+//! # Not here
+//! Threads (`pipeline` runs trials in parallel). Counts: those of the line work before. The mesh itself:
+//! `meshing` makes it anew from where nodes are then.
+
+pub mod check;
+
+mod rings;
+mod search;
+mod trial;
+
+use crate::cleanup;
+use crate::cleanup::changes::Tally;
+use crate::domain::finding::Finding;
+use crate::domain::line::Domain;
+use crate::domain::size::SizeWish;
+use crate::noding::arrangement::Arrangement;
+use crate::settling::rings::Rings;
+
+pub use crate::settling::search::REACH;
+pub use crate::settling::trial::Trial;
+pub use crate::settling::trial::trial;
+
+/// Rounds, unless the job says otherwise.
+pub const ROUNDS: u32 = 2;
+
+/// Sub-domains with more quads than this are tried once: most of theirs are far from all lines.
+pub const LARGE_QUADS: f64 = 2000.0;
+
+/// What one round did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settled {
+    /// By node: has it moved?
+    pub moved: Vec<bool>,
+    /// The least worth of all rings, before and after.
+    pub poorest: [f64; 2],
+    /// What is still too short, too narrow or too sharp; none if nothing moved.
+    pub left: Option<Vec<Finding>>,
+}
+
+/// Moves the nodes of `arrangement` to where the rings of `trials` are better, the rings with them.
+/// `tally` learns how far lines are away now.
+pub fn settle(
+    domain: &Domain,
+    sizes: &SizeWish,
+    options: &cleanup::Options,
+    arrangement: &mut Arrangement,
+    tally: &mut Tally,
+    trials: &mut [Trial],
+) -> Settled {
+    let mut settled = Settled {
+        moved: vec![false; arrangement.points.len()],
+        poorest: [f64::INFINITY; 2],
+        left: None,
+    };
+    settled.left = cleanup::shifts::shift(domain, sizes, options, arrangement, tally, |shifts| {
+        let size_at_m: Vec<f64> = (0..shifts.nodes())
+            .map(|node| shifts.size_at_m(node))
+            .collect();
+        let mut rings = Rings::new(trials, &size_at_m);
+        let before = rings.poorest();
+        settled.moved = search::search(&mut rings, shifts, options.min_edge);
+        settled.poorest = [before, rings.poorest()];
+        let way = rings.way;
+        for ring in trials.iter_mut().flat_map(|it| &mut it.rings) {
+            ring.corners = ring.moved(&way);
+        }
+    });
+    settled
+}

@@ -1,0 +1,97 @@
+//! Settling: promises on random messy line work, and what it is for.
+
+use crate::cleanup::cleaned;
+use crate::cleanup::domain;
+use crate::cleanup::messy_domain;
+use crate::cleanup::usual;
+use polder::boundary;
+use polder::boundary::walks::Site;
+use polder::cleanup::Cleaned;
+use polder::domain::line::Domain;
+use polder::domain::size::SizeWish;
+use polder::intervals;
+use polder::noding::arrangement::Arrangement;
+use polder::parity;
+use polder::partition;
+use polder::partition::subdomains::Partition;
+use polder::pipeline::plan::parity_options;
+use polder::settling::Settled;
+use polder::settling::check::check;
+use polder::settling::settle;
+use polder::settling::trial;
+use proptest::prelude::*;
+
+/// One round on clean line work; all promises checked. None if parity refuses the counts.
+fn round(domain: &Domain, cleaned: &Cleaned, size_m: f64) -> Option<(Arrangement, Settled)> {
+    let sizes = SizeWish::uniform(size_m, domain.kinds.len());
+    let before = &cleaned.arrangement;
+    let options = partition::Options {
+        corner_deg: 30.0,
+        tile_cells: 1 << 20,
+    };
+    let partition: Partition = partition::partition(domain, before, &options).unwrap();
+    let options = intervals::Options {
+        corner_deg: 30.0,
+        upper_ratio: 2.5,
+        block_ratio: 2.2,
+        least_edge: 0.25,
+    };
+    let goals = intervals::plan(domain, &sizes, before, &partition, &options);
+    let counts = parity::balance(&partition, &goals, &parity_options(1.2))
+        .ok()?
+        .counts;
+    let first = boundary::numbering(&partition, &counts, before.points.len());
+    let site = Site {
+        domain,
+        sizes: &sizes,
+        arrangement: before,
+        partition: &partition,
+        counts: &counts,
+        first: &first,
+    };
+    let all = 0..partition.subdomains.len() as u32;
+    let mut trials: Vec<_> = all.map(|subdomain| trial(&site, subdomain)).collect();
+    let (mut after, mut tally) = (before.clone(), cleaned.tally.clone());
+    let options = usual(domain);
+    let settled = settle(
+        domain,
+        &sizes,
+        &options,
+        &mut after,
+        &mut tally,
+        &mut trials,
+    );
+    let both = [before, &after];
+    let verdict = check(domain, &sizes, &options, both, &partition, &settled);
+    assert_eq!(verdict, Ok(()));
+    assert!(tally.displacement_max_m <= 0.5 * size_m + 0.01);
+    Some((after, settled))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(100))]
+
+    #[test]
+    fn promises_hold_on_messy_line_work(domain in messy_domain(), size in 2.0..15.0_f64) {
+        let cleaned = cleaned(&domain, size);
+        let once = round(&domain, &cleaned, size);
+        prop_assert_eq!(round(&domain, &cleaned, size), once, "same input, same bits");
+    }
+}
+
+/// On a grid that fits the size nothing is poor, and nothing moves.
+#[test]
+fn what_is_good_stays() {
+    let grid = domain(&[
+        (
+            "boundary",
+            vec![(0, 0), (40_000, 0), (40_000, 30_000), (0, 30_000), (0, 0)],
+        ),
+        ("", vec![(0, 10_000), (40_000, 10_000)]),
+        ("", vec![(20_000, 0), (20_000, 30_000)]),
+    ]);
+    let cleaned = cleaned(&grid, 5.0);
+    let (after, settled) = round(&grid, &cleaned, 5.0).unwrap();
+    assert_eq!(after, cleaned.arrangement);
+    assert_eq!((settled.left, settled.moved.contains(&true)), (None, false));
+}
