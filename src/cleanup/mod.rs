@@ -76,7 +76,8 @@
 //! bytes an edge.
 //!
 //! # Not here
-//! Crossings (`noding`), sub-domains and curves (`partition`), chords of curves (none: nodes are
+//! Crossings (`noding`), sub-domains and curves (`partition`), what elements think of where nodes are
+//! (`settling`, by way of [`shifts`]), chords of curves (none: nodes are
 //! mesh nodes, so tolerance is used up here).
 
 mod attempt;
