@@ -61,15 +61,26 @@ pub(super) struct Graph<'a> {
 
 impl<'a> Graph<'a> {
     pub(super) fn new(arrangement: &Arrangement, measure: &'a Measure<'a>) -> Graph<'a> {
-        let lengths = arrangement.edges.iter().map(|&edge| {
-            let [a, b] = edge.map(|node| arrangement.points[node as usize]);
+        let all: Vec<u32> = (0..arrangement.edges.len() as u32).collect();
+        Graph::of(arrangement, &all, measure)
+    }
+
+    /// The graph of all nodes and these edges, which get new ids in this order.
+    pub(super) fn of(
+        arrangement: &Arrangement,
+        edges: &[u32],
+        measure: &'a Measure<'a>,
+    ) -> Graph<'a> {
+        let ends = |edge: u32| arrangement.edges[edge as usize];
+        let lengths = edges.iter().map(|&edge| {
+            let [a, b] = ends(edge).map(|node| arrangement.points[node as usize]);
             a.distance(b)
         });
-        let mean = lengths.sum::<f64>() / arrangement.edges.len().max(1) as f64;
+        let mean = lengths.sum::<f64>() / edges.len().max(1) as f64;
         let mut graph = Graph::without_edges(measure, arrangement.points.clone(), mean, None);
-        for (edge, &ends) in arrangement.edges.iter().enumerate() {
-            let (pieces, inside) = as_cut(arrangement, measure.domain, edge as u32);
-            graph.add(ends, pieces, inside);
+        for &edge in edges {
+            let (pieces, inside) = as_cut(arrangement, measure.domain, edge);
+            graph.add(ends(edge), pieces, inside);
         }
         graph
     }

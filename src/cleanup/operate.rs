@@ -13,8 +13,10 @@ use crate::cleanup::edge::Fused;
 use crate::cleanup::graph::Graph;
 use crate::cleanup::stations::Absorbed;
 use crate::geometry::point::Point;
+use crate::geometry::point::Xy;
 use crate::geometry::predicates::on_segment;
 use crate::geometry::predicates::orient;
+use crate::noding::arrangement::Piece;
 
 /// What a bent edge is bent to.
 #[derive(Clone, Copy, Debug)]
@@ -30,17 +32,23 @@ type Drafts = SmallVec<[Draft; 6]>;
 impl Graph<'_> {
     /// Moves node `v` to the free point `p`. `share`: of the tolerance.
     pub(super) fn shift(&mut self, v: u32, p: Point, share: f64) -> bool {
-        self.shift_if(v, p, |graph| graph.star_fits(v, p, share))
+        let measure = self.measure;
+        self.shift_if(v, p, |piece, a, b| measure.fits(piece, a, b, share))
     }
 
-    /// Moves node `v` to the free point `p` if its stretches, with the stations that they would have,
-    /// fit there.
-    pub(super) fn shift_if(&mut self, v: u32, p: Point, fits: impl Fn(&Self) -> bool) -> bool {
+    /// Moves node `v` to the free point `p` if `fits` holds for all its stretches and the edges that
+    /// they would have, asked in the order of its star.
+    pub(super) fn shift_if(
+        &mut self,
+        v: u32,
+        p: Point,
+        fits: impl FnMut(&Piece, Xy, Xy) -> bool,
+    ) -> bool {
         if p == self.point(v) || !self.is_free(v) || !self.reaches(p) {
             return false;
         }
         let stations = self.restation_star(v, self.measure.metres(p));
-        if !fits(self) || !self.star_is_clear(v, p, &self.neighbours(v), Some(p)) {
+        if !self.star_fits(v, p, fits) || !self.star_is_clear(v, p, &self.neighbours(v), Some(p)) {
             self.set_stations(&stations);
             return false;
         }
@@ -59,14 +67,14 @@ impl Graph<'_> {
     }
 
     /// True if all stretches at `v` fit when it is at `p`.
-    fn star_fits(&self, v: u32, p: Point, share: f64) -> bool {
+    fn star_fits(&self, v: u32, p: Point, mut fits: impl FnMut(&Piece, Xy, Xy) -> bool) -> bool {
         let p = self.measure.metres(p);
         self.star[v as usize].iter().all(|&edge| {
             let it = &self.edges[edge as usize];
             let [a, b] = it
                 .ends
                 .map(|end| if end == v { p } else { self.metres(end) });
-            (it.pieces.iter()).all(|piece| self.measure.fits(piece, a, b, share))
+            it.pieces.iter().all(|piece| fits(piece, a, b))
         })
     }
 

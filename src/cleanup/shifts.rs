@@ -5,12 +5,12 @@ use crate::cleanup::Options;
 use crate::cleanup::SHARP_DEG;
 use crate::cleanup::audit;
 use crate::cleanup::changes::Tally;
-use crate::cleanup::edge::as_cut;
 use crate::cleanup::graph::Graph;
 use crate::cleanup::graph::Stand;
 use crate::cleanup::importance::is_rim_corner;
 use crate::cleanup::leftovers;
 use crate::cleanup::measure::Measure;
+use crate::cleanup::measure::distance;
 use crate::cleanup::relax::along_rim;
 use crate::cleanup::sharp;
 use crate::domain::finding::Finding;
@@ -27,9 +27,8 @@ pub struct Shifts<'m> {
     edge: Vec<u32>,
 }
 
-/// Hands clean line work to `work`, and takes over where nodes are afterwards. Returns what is still
-/// too short, too narrow or too sharp, or none if nothing was shifted. Ids stay, so points may come
-/// out of their order.
+/// Hands clean line work to `work`, and takes over where nodes are afterwards; nothing if no line may
+/// be moved. Ids stay, so points may come out of their order.
 ///
 /// Edges without pieces (seams, rungs) are not lines: their ends stay.
 pub fn shift(
@@ -37,33 +36,39 @@ pub fn shift(
     sizes: &SizeWish,
     options: &Options,
     arrangement: &mut Arrangement,
-    tally: &mut Tally,
     work: impl FnOnce(&mut Shifts),
-) -> Option<Vec<Finding>> {
+) {
     let measure = Measure::new(domain, sizes, options);
-    if !measure.allows_any() {
-        return None;
+    if measure.allows_any() {
+        let mut shifts = Shifts::of(arrangement, &measure);
+        work(&mut shifts);
+        shifts.write(arrangement);
     }
-    let mut shifts = Shifts::of(arrangement, &measure);
-    work(&mut shifts);
-    if shifts.graph.at == arrangement.points {
-        return None;
-    }
-    shifts.write(arrangement);
-    let graph = &shifts.graph;
-    let moved = audit::displacements(graph);
+}
+
+/// What is to be told anew of line work that was shifted: how far lines are away, in `tally`; returned, what
+/// is still too short, too narrow or too sharp.
+pub fn retell(
+    domain: &Domain,
+    sizes: &SizeWish,
+    options: &Options,
+    arrangement: &Arrangement,
+    tally: &mut Tally,
+) -> Vec<Finding> {
+    let measure = Measure::new(domain, sizes, options);
+    let graph = Shifts::of(arrangement, &measure).graph;
+    let moved = audit::displacements(&graph);
     *tally = Tally {
-        displacement_max_m: moved.displacement_max_m,
-        displacement_p99_m: moved.displacement_p99_m,
-        displacement_max_over_size: moved.displacement_max_over_size,
-        displacement_p99_over_size: moved.displacement_p99_over_size,
+        rows: std::mem::take(&mut tally.rows),
+        length_m: tally.length_m,
+        length_dropped_m: tally.length_dropped_m,
         sharp_angles: [
             tally.sharp_angles[0],
             sharp::sharp_angles(arrangement, SHARP_DEG),
         ],
-        ..std::mem::take(tally)
+        ..moved
     };
-    Some(leftovers::leftovers(graph))
+    leftovers::leftovers(&graph)
 }
 
 impl<'m> Shifts<'m> {
@@ -71,22 +76,16 @@ impl<'m> Shifts<'m> {
         let all = 0..arrangement.edges.len() as u32;
         let (lines, others): (Vec<u32>, Vec<u32>) =
             all.partition(|&edge| !arrangement.pieces_of(edge).is_empty());
-        let ends = |edge: u32| arrangement.edges[edge as usize];
-        let lengths = lines.iter().map(|&edge| {
-            let [a, b] = ends(edge).map(|node| arrangement.points[node as usize]);
-            a.distance(b)
-        });
-        let mean = lengths.sum::<f64>() / lines.len().max(1) as f64;
-        let mut graph = Graph::without_edges(measure, arrangement.points.clone(), mean, None);
-        for &edge in &lines {
-            let (pieces, inside) = as_cut(arrangement, measure.domain, edge);
-            let id = graph.add(ends(edge), pieces.clone(), inside);
-            // all of them, as they are written back
-            graph.edges[id as usize].pieces = pieces;
+        let mut graph = Graph::of(arrangement, &lines, measure);
+        for (edge, &id) in graph.edges.iter_mut().zip(&lines) {
+            // all of them: the graph thins bundles out, and here they are written back
+            edge.pieces = arrangement.pieces_of(id).into();
         }
         graph.index.take_nodes(&graph.at);
-        for node in others.iter().flat_map(|&edge| ends(edge)) {
-            graph.set_stand(node, Stand::Tied);
+        for &edge in &others {
+            for node in arrangement.edges[edge as usize] {
+                graph.set_stand(node, Stand::Tied);
+            }
         }
         Shifts { graph, edge: lines }
     }
@@ -97,7 +96,7 @@ impl<'m> Shifts<'m> {
     }
 
     /// Where a node is, local metres.
-    pub fn at_m(&self, node: u32) -> Xy {
+    fn at_m(&self, node: u32) -> Xy {
         self.graph.metres(node)
     }
 
@@ -126,18 +125,10 @@ impl<'m> Shifts<'m> {
         let (at, measure) = (self.at_m(node), self.graph.measure);
         let limits_m = self.limits_m(node, share);
         let to = measure.on_grid([at[0] + by[0], at[1] + by[1]]);
-        self.graph.shift_if(node, to, |graph| {
-            let place = |end: u32| match end == node {
-                true => measure.metres(to),
-                false => graph.metres(end),
-            };
-            let star = graph.star[node as usize].iter();
-            let edges = star.map(|&edge| &graph.edges[edge as usize]);
-            let stretches = edges.flat_map(|edge| edge.pieces.iter().map(move |it| (edge, it)));
-            stretches.zip(&limits_m).all(|((edge, piece), &limit_m)| {
-                let [a, b] = edge.ends.map(place);
-                measure.deviation_m(piece, a, b) <= limit_m
-            })
+        let mut limits_m = limits_m.into_iter();
+        self.graph.shift_if(node, to, |piece, a, b| {
+            let limit_m = limits_m.next().expect("one for each stretch");
+            measure.deviation_m(piece, a, b) <= limit_m
         })
     }
 
@@ -172,25 +163,30 @@ impl<'m> Shifts<'m> {
     }
 }
 
-/// Checks that no stretch is farther from its edge than half of its tolerance, or than it was, rounding
-/// aside; that corners of the outline stayed, and other nodes of it stayed on it.
+/// Checks that no stretch is farther from its edge than `share` of its tolerance, or than it was; that no
+/// edge has become shorter than the least that is asked for anywhere; rounding aside; and that corners of
+/// the outline stayed.
 pub fn check(
     domain: &Domain,
     sizes: &SizeWish,
     options: &Options,
     [before, after]: [&Arrangement; 2],
+    share: f64,
 ) -> Result<(), String> {
     let measure = Measure::new(domain, sizes, options);
     let (was, is) = (Shifts::of(before, &measure), Shifts::of(after, &measure));
     let rounding_m = 2.0 * domain.grid.cell_m;
-    for (one, other) in was.graph.edges.iter().zip(&is.graph.edges) {
-        let [(a, b), (c, d)] = [(&was, one), (&is, other)].map(|(shifts, edge)| {
-            let [a, b] = edge.ends.map(|node| shifts.at_m(node));
-            (a, b)
-        });
+    let finest_m = (sizes.by_kind_m.iter().copied()).fold(sizes.default_m, f64::min);
+    let edges = was.graph.edges.iter().zip(&is.graph.edges);
+    for (id, (one, other)) in (0..).zip(edges) {
+        let ((a, b), (c, d)) = (was.graph.ends_m(id), is.graph.ends_m(id));
+        let (old_m, new_m) = (distance(a, b), distance(c, d));
+        if new_m < old_m.min(options.min_edge * finest_m) - rounding_m {
+            return Err(format!("edge {id} is {new_m} m long, and was {old_m} m"));
+        }
         for (old, new) in one.pieces.iter().zip(&other.pieces) {
-            let half_m = 0.5 * measure.tolerance_m[new.line as usize];
-            let limit_m = half_m.max(measure.deviation_m(old, a, b)) + rounding_m;
+            let usual_m = share * measure.tolerance_m[new.line as usize];
+            let limit_m = usual_m.max(measure.deviation_m(old, a, b)) + rounding_m;
             let away_m = measure.deviation_m(new, c, d);
             if away_m > limit_m {
                 let line = new.line;
@@ -201,10 +197,8 @@ pub fn check(
         }
     }
     let moved = |&node: &u32| was.graph.point(node) != is.graph.point(node);
-    match (0..was.nodes())
-        .filter(moved)
-        .find(|&node| is_rim_corner(&was.graph, node))
-    {
+    let mut moved = (0..was.nodes()).filter(moved);
+    match moved.find(|&node| is_rim_corner(&was.graph, node)) {
         Some(node) => Err(format!("node {node}, a corner of the outline, has moved")),
         None => Ok(()),
     }

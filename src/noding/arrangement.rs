@@ -32,7 +32,8 @@ impl Piece {
 ///
 /// Invariants (`noding::check`): points sorted and unique; each edge `[a, b]` has `a < b`; edges
 /// sorted and unique; two edges meet only at common nodes; each node is used; pieces of an edge are
-/// sorted by (line, from, to). An edge without pieces is a seam. Memory: 8 bytes a point, 12 an
+/// sorted by (line, from, to). An edge without pieces is a seam. (Once nodes have settled, after `parity`, ids no
+/// longer follow the order of points.) Memory: 8 bytes a point, 12 an
 /// edge, 24 a piece.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Arrangement {

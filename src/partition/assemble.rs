@@ -112,19 +112,27 @@ pub fn remeasure(domain: &Domain, arrangement: &Arrangement, partition: &mut Par
     let cell2 = domain.grid.cell_m * domain.grid.cell_m;
     let curves = &partition.curves;
     for subdomain in &mut partition.subdomains {
-        let halves = subdomain.walks.iter().flatten();
-        let area2 = halves.map(|&half| {
-            let nodes = &curves[(half >> 1) as usize].nodes;
-            let points = nodes.iter().map(|&it| arrangement.points[it as usize]);
-            let points: Vec<Point> = points.collect();
-            let cross = |pair: &[Point]| {
-                i128::from(pair[0].x) * i128::from(pair[1].y)
-                    - i128::from(pair[0].y) * i128::from(pair[1].x)
-            };
-            let along: i128 = points.windows(2).map(cross).sum();
-            if half & 1 == 0 { along } else { -along }
+        let all = subdomain.walks.iter().flatten();
+        let of_curve = all.map(|&half| area2(arrangement, &halves(arrangement, curves, half)));
+        subdomain.area_m2 = 0.5 * of_curve.sum::<i128>() as f64 * cell2;
+    }
+}
+
+/// The half-edges of a half-curve, in its direction.
+pub(super) fn halves(
+    arrangement: &Arrangement,
+    curves: &[Curve],
+    half: HalfCurve,
+) -> Vec<HalfEdge> {
+    let curve = &curves[(half >> 1) as usize];
+    let along =
+        curve.edges.iter().zip(&curve.nodes).map(|(&edge, &node)| {
+            edge << 1 | u32::from(arrangement.edges[edge as usize][0] != node)
         });
-        subdomain.area_m2 = 0.5 * area2.sum::<i128>() as f64 * cell2;
+    if half & 1 == 0 {
+        along.collect()
+    } else {
+        along.rev().map(|it| it ^ 1).collect()
     }
 }
 

@@ -5,6 +5,7 @@ use crate::geometry::predicates::by_angle;
 use crate::noding::arrangement::Arrangement;
 use crate::noding::rim::rim_side;
 use crate::partition::assemble::area2;
+use crate::partition::assemble::halves;
 use crate::partition::star::HalfEdge;
 use crate::partition::star::Stars;
 use crate::partition::star::direction;
@@ -92,20 +93,6 @@ fn check_sides(partition: &Partition) -> Result<(), Defect> {
         ensure(is_so, "a curve knows its sides", curve.nodes[0])?;
     }
     Ok(())
-}
-
-/// The half-edges of a half-curve, in its direction.
-fn halves(arrangement: &Arrangement, curves: &[Curve], half: HalfCurve) -> Vec<HalfEdge> {
-    let curve = &curves[(half >> 1) as usize];
-    let along =
-        curve.edges.iter().zip(&curve.nodes).map(|(&edge, &node)| {
-            edge << 1 | u32::from(arrangement.edges[edge as usize][0] != node)
-        });
-    if half & 1 == 0 {
-        along.collect()
-    } else {
-        along.rev().map(|it| it ^ 1).collect()
-    }
 }
 
 /// The half-edges of each walk of each sub-domain.

@@ -1,5 +1,6 @@
 //! Trial meshes on all cores, and the nodes that move for them: the end of phase B.
 
+use crate::cleanup;
 use crate::domain::finding::Finding;
 use crate::partition;
 use crate::pipeline::error::Error;
@@ -31,20 +32,34 @@ pub(super) fn settle(job: &Job, plan: &mut Plan, watch: &Stopwatch) -> Result<()
     let rounds = if may_move { job.settle } else { 0 };
     let subdomains = plan.city.partition.subdomains.len();
     let left = watch.stage("settling", u64::from(rounds) * subdomains as u64, |count| {
-        let mut trials = vec![Trial::default(); subdomains];
-        let mut moves = 0;
-        let mut last: Option<Settled> = None;
-        for _ in 0..rounds {
-            try_out(plan, &mut trials, last.as_ref(), count);
-            let settled = settle_once(plan, &mut trials);
-            moves += settled.moved.iter().filter(|&&it| it).count();
-            left = settled.left.clone().unwrap_or(left);
-            last = Some(settled);
+        let moves = settle_in_rounds(plan, rounds, count);
+        if moves > 0 {
+            left = cleanup::shifts::retell(
+                &plan.domain,
+                &plan.sizes,
+                &plan.cleaning,
+                &plan.city.arrangement,
+                &mut plan.city.tally,
+            );
         }
         Ok::<_, Error>((left, format!("{moves} moves of nodes to better places")))
     })?;
     plan.city.findings.extend(left);
     Ok(())
+}
+
+/// Returns how often nodes moved, each counted once a round.
+fn settle_in_rounds(plan: &mut Plan, rounds: u32, count: &(dyn Fn(u64) + Sync)) -> usize {
+    let mut trials = vec![Trial::default(); plan.city.partition.subdomains.len()];
+    let mut moves = 0;
+    let mut last: Option<Settled> = None;
+    for _ in 0..rounds {
+        try_out(plan, &mut trials, last.as_ref(), count);
+        let settled = settle_once(plan, &mut trials);
+        moves += settled.moves();
+        last = Some(settled);
+    }
+    moves
 }
 
 /// Meshes sub-domains on trial: all of them, or those of moderate size at nodes that `last` moved.
@@ -77,11 +92,8 @@ fn settle_once(plan: &mut Plan, trials: &mut [Trial]) -> Settled {
         &plan.sizes,
         &plan.cleaning,
         &mut city.arrangement,
-        &mut city.tally,
         trials,
     );
-    if settled.left.is_some() {
-        partition::remeasure(&plan.domain, &city.arrangement, &mut city.partition);
-    }
+    partition::remeasure(&plan.domain, &city.arrangement, &mut city.partition);
     settled
 }

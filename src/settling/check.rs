@@ -4,16 +4,18 @@ use crate::cleanup;
 use crate::domain::line::Domain;
 use crate::domain::size::SizeWish;
 use crate::geometry::grid::Grid;
+use crate::noding;
 use crate::noding::arrangement::Arrangement;
 use crate::partition::remeasure;
 use crate::partition::subdomains::Partition;
 use crate::settling::REACH;
 use crate::settling::Settled;
+use crate::settling::search::SHARE;
 
 /// Checks one round, which made `after` of `before`; `partition` is that of both.
 ///
-/// Distances to the lines are checked by clean-up's own measure; that the way was clear, by the areas: a node
-/// that had jumped over an edge would turn a sub-domain inside out.
+/// Distances to the lines are checked by clean-up's own measure. That no node jumped over an edge: the line work is
+/// planar, and no sub-domain inside out.
 pub fn check(
     domain: &Domain,
     sizes: &SizeWish,
@@ -40,7 +42,8 @@ pub fn check(
             .copied()
             .fold(sizes.default_m, f64::max);
     check_moves(&domain.grid, [before, after], settled, reach_m)?;
-    cleanup::shifts::check(domain, sizes, options, [before, after])?;
+    cleanup::shifts::check(domain, sizes, options, [before, after], SHARE)?;
+    noding::check::check(&in_order(after)).map_err(|it| it.to_string())?;
     let mut measured = partition.clone();
     remeasure(domain, after, &mut measured);
     if let Some(k) = measured.subdomains.iter().position(|it| it.area_m2 <= 0.0) {
@@ -53,6 +56,13 @@ pub fn check(
             "the poorest quad was worth {was}, and is worth {is}"
         )),
     }
+}
+
+/// The same line work with points in their order.
+fn in_order(arrangement: &Arrangement) -> Arrangement {
+    let edges = (0..).zip(&arrangement.edges);
+    let parts = edges.map(|(edge, &ends)| (ends, arrangement.pieces_of(edge).to_vec()));
+    Arrangement::from_parts(&arrangement.points, parts.collect())
 }
 
 /// Nodes that are said to have moved did, no farther than they may; no others; and no ends of seams.

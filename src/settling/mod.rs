@@ -12,7 +12,7 @@
 //!    and rungs stay; other nodes of the outline move along it.
 //! 3. A node moves by at most [`REACH`] of the size in one round.
 //! 4. The poorest quad of the trial meshes is no poorer afterwards, and no edge becomes shorter than
-//!    the least edge that is asked for.
+//!    the least that is asked for along the finest line beside it.
 //! 5. Same input, same bits. Where clean-up was to change nothing, nothing changes here.
 //!
 //! # Needs
@@ -55,8 +55,6 @@ mod search;
 mod trial;
 
 use crate::cleanup;
-use crate::cleanup::changes::Tally;
-use crate::domain::finding::Finding;
 use crate::domain::line::Domain;
 use crate::domain::size::SizeWish;
 use crate::noding::arrangement::Arrangement;
@@ -79,26 +77,28 @@ pub struct Settled {
     pub moved: Vec<bool>,
     /// The least worth of all rings, before and after.
     pub poorest: [f64; 2],
-    /// What is still too short, too narrow or too sharp; none if nothing moved.
-    pub left: Option<Vec<Finding>>,
+}
+
+impl Settled {
+    /// How many nodes have moved.
+    pub fn moves(&self) -> usize {
+        self.moved.iter().filter(|&&it| it).count()
+    }
 }
 
 /// Moves the nodes of `arrangement` to where the rings of `trials` are better, the rings with them.
-/// `tally` learns how far lines are away now.
 pub fn settle(
     domain: &Domain,
     sizes: &SizeWish,
     options: &cleanup::Options,
     arrangement: &mut Arrangement,
-    tally: &mut Tally,
     trials: &mut [Trial],
 ) -> Settled {
     let mut settled = Settled {
         moved: vec![false; arrangement.points.len()],
         poorest: [f64::INFINITY; 2],
-        left: None,
     };
-    settled.left = cleanup::shifts::shift(domain, sizes, options, arrangement, tally, |shifts| {
+    cleanup::shifts::shift(domain, sizes, options, arrangement, |shifts| {
         let size_at_m: Vec<f64> = (0..shifts.nodes())
             .map(|node| shifts.size_at_m(node))
             .collect();

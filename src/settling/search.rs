@@ -3,6 +3,7 @@
 use crate::cleanup::shifts::Shifts;
 use crate::geometry::point::COMPASS;
 use crate::geometry::point::Xy;
+use crate::meshing::LIFTED;
 use crate::settling::rings::Rings;
 
 /// How far a node may go in one round, sizes. (Measured on six cities: with .35 nothing gains.)
@@ -10,10 +11,10 @@ pub const REACH: f64 = 0.2;
 
 /// Of the tolerance, that is a quarter of the size: what 99 % of the lines are to stay within. (Measured on six cities:
 /// .55 lets 1 % of the lines of two more go beyond it.)
-const SHARE: f64 = 0.5;
+pub(super) const SHARE: f64 = 0.5;
 
-/// A quad of less worth is poor: the worth at which `meshing` leaves a quad alone.
-const POOR: f64 = 0.75;
+/// A quad of less worth is poor: `meshing` leaves better ones alone.
+const POOR: f64 = LIFTED;
 
 /// Sweeps over the nodes of quads that are still poor.
 const SWEEPS: usize = 8;
