@@ -59,8 +59,11 @@ impl Room<'_> {
         if Some(end) == self.mover {
             return true;
         }
+        if triangle.contains(&end) {
+            return self.vacant != Some(end);
+        }
         // most ends are told by the bounding box
-        !in_triangle(end, triangle) || (triangle.contains(&end) && self.vacant != Some(end))
+        !in_triangle(end, triangle)
     }
 }
 

@@ -93,16 +93,24 @@ pub(super) fn make_even(graph: &mut Graph, even: &Even, nodes: &[u32]) {
         return;
     }
     let mut starts: Vec<(f64, Point, u32, usize)> = Vec::new();
+    let mut seen = vec![[false; 2]; graph.edges.len()];
     for &node in nodes {
-        let at = graph.point(node);
         for &edge in &graph.star[node as usize] {
-            let it = &graph.edges[edge as usize];
-            let side = it.end_at(node);
-            // once, from its first node
-            if at < graph.point(it.other(node))
-                && let Some(face) = small_face(graph, even, edge, side)
-                && (face.walk.iter()).all(|&(_, it)| at <= graph.point(it))
+            let side = graph.edges[edge as usize].end_at(node);
+            if seen[edge as usize][side] {
+                continue;
+            }
+            // what is not small is not so from any of its edges
+            let found = left_of(graph, even, edge, side, |edge, side| {
+                seen[edge as usize][side] = true;
+            });
+            if let Beside::Face(face) = found
+                && face.length <= even.small
             {
+                let from = |it: &(u32, u32)| (graph.point(it.1), it.0, it.1);
+                let first = face.walk.iter().map(from).min();
+                let (at, edge, node) = first.expect("a walk has edges");
+                let side = graph.edges[edge as usize].end_at(node);
                 starts.push((face.width, at, edge, side));
             }
         }
@@ -134,6 +142,17 @@ fn small_face(graph: &Graph, even: &Even, edge: u32, side: usize) -> Option<Face
 
 /// What lies on the left of an edge, seen from its end `side`.
 fn beside(graph: &Graph, even: &Even, edge: u32, side: usize) -> Beside {
+    left_of(graph, even, edge, side, |_, _| ())
+}
+
+/// The same; tells of the half-edges that it passes there.
+fn left_of(
+    graph: &Graph,
+    even: &Even,
+    edge: u32,
+    side: usize,
+    mut tell: impl FnMut(u32, usize),
+) -> Beside {
     let start = (edge, side);
     if !graph.edges[edge as usize].inside[side] {
         return Beside::Large;
@@ -156,6 +175,7 @@ fn beside(graph: &Graph, even: &Even, edge: u32, side: usize) -> Beside {
             return Beside::Large;
         }
         walk.push((edge, from));
+        tell(edge, side);
         edge = leaving(graph, edge, to);
         side = graph.edges[edge as usize].end_at(to);
         if (edge, side) == start {

@@ -91,6 +91,7 @@ mod districts;
 mod edge;
 mod even;
 mod finish;
+mod gaps;
 mod graph;
 mod importance;
 mod index;
@@ -390,15 +391,20 @@ fn make_room(graph: &mut Graph) {
     let mut mark = graph.touched.len();
     wedges::divide_wedges(graph, &GENTLE.zip, &graph.nodes());
     relax::relax(graph, &wanted, &graph.nodes());
-    for _ in 0..FINAL_ROUNDS {
+    for round in 0..FINAL_ROUNDS {
+        // later on, what nothing has touched since would fail as it did
+        let nodes = |graph: &Graph| match round {
+            0 => graph.nodes(),
+            _ => graph.nodes_since(mark),
+        };
         let relaxed = graph.touched.len();
-        tips::blunt_tips(graph, &BLUNT, &graph.nodes());
-        separate::separate(graph, &stuck, &graph.nodes());
-        collapse::collapse_thin(graph, &HOPELESS, &graph.nodes());
+        tips::blunt_tips(graph, &BLUNT, &nodes(graph));
+        separate::separate(graph, &stuck, &nodes(graph));
+        collapse::collapse_thin(graph, &HOPELESS, &nodes(graph));
         simplify::simplify(graph, &SMOOTH, &graph.nodes_since(mark));
         // two nodes that became one may have left a wedge between their long edges
         wedges::divide_wedges(graph, &GENTLE.zip, &graph.nodes_since(mark));
-        even::make_even(graph, &EVEN, &graph.nodes());
+        even::make_even(graph, &EVEN, &nodes(graph));
         relax::relax(graph, &wanted, &graph.nodes_since(relaxed));
         mark = relaxed;
     }

@@ -5,6 +5,7 @@ use crate::cleanup::Options;
 use crate::cleanup::SHARP_DEG;
 use crate::cleanup::audit;
 use crate::cleanup::changes::Tally;
+use crate::cleanup::gaps;
 use crate::cleanup::graph::Graph;
 use crate::cleanup::graph::Stand;
 use crate::cleanup::importance::is_rim_corner;
@@ -30,7 +31,8 @@ pub struct Shifts<'m> {
 /// Hands clean line work to `work`, and takes over where nodes are afterwards; nothing if no line may
 /// be moved. Ids stay, so points may come out of their order.
 ///
-/// Edges without pieces (seams, rungs) are not lines: their ends stay.
+/// Edges without pieces (seams, rungs) are not lines: their ends stay. So do the nodes of edges that cover a stretch which
+/// they do not carry.
 pub fn shift(
     domain: &Domain,
     sizes: &SizeWish,
@@ -82,6 +84,9 @@ impl<'m> Shifts<'m> {
             edge.pieces = arrangement.pieces_of(id).into();
         }
         graph.index.take_nodes(&graph.at);
+        for node in gaps::nodes_beside(&graph, &gaps::gaps(&graph)) {
+            graph.set_stand(node, Stand::Tied);
+        }
         for &edge in &others {
             for node in arrangement.edges[edge as usize] {
                 graph.set_stand(node, Stand::Tied);
@@ -163,7 +168,8 @@ impl<'m> Shifts<'m> {
     }
 }
 
-/// Checks that no stretch is farther from its edge than `share` of its tolerance, or than it was; that no
+/// Checks that no stretch is farther from its edge than `share` of its tolerance, or than it was; that no less is
+/// covered of what no edge carries; that no
 /// edge has become shorter than the least that is asked for anywhere; rounding aside; and that corners of
 /// the outline stayed.
 pub fn check(
@@ -195,6 +201,13 @@ pub fn check(
                 ));
             }
         }
+    }
+    let gaps = gaps::gaps(&was.graph);
+    let [before_m, after_m] = [&was.graph, &is.graph].map(|it| gaps::uncovered_m(it, &gaps, 0.0));
+    if after_m > before_m + rounding_m {
+        return Err(format!(
+            "{after_m} m of lines are beyond tolerance of all edges of theirs, and were {before_m} m"
+        ));
     }
     let moved = |&node: &u32| was.graph.point(node) != is.graph.point(node);
     let mut moved = (0..was.nodes()).filter(moved);

@@ -108,7 +108,6 @@ use crate::meshing::score::Score;
 use crate::meshing::triangulate::triangulate;
 use crate::meshing::visits::Visits;
 
-pub(crate) use crate::meshing::lift::LIFTED;
 pub(crate) use crate::meshing::lift::worth_of;
 
 /// What may be tried.

@@ -3,7 +3,6 @@
 use crate::cleanup::shifts::Shifts;
 use crate::geometry::point::COMPASS;
 use crate::geometry::point::Xy;
-use crate::meshing::LIFTED;
 use crate::settling::rings::Rings;
 
 /// How far a node may go in one round, sizes. (Measured on six cities: with .35 nothing gains.)
@@ -13,8 +12,10 @@ pub const REACH: f64 = 0.2;
 /// .55 lets 1 % of the lines of two more go beyond it.)
 pub(super) const SHARE: f64 = 0.5;
 
-/// A quad of less worth is poor: `meshing` leaves better ones alone.
-const POOR: f64 = LIFTED;
+/// A quad of less worth is poor. (Measured on twelve cities: with the .75 of `meshing`, which has many more quads to
+/// look at, the mean shape is .0024 lower and irregular nodes are .18 % more, and the displacement that 99 % of the
+/// lines stay below is .002 of the size less; .97 gains nothing.)
+const POOR: f64 = 0.92;
 
 /// Sweeps over the nodes of quads that are still poor.
 const SWEEPS: usize = 8;
