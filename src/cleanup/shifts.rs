@@ -28,6 +28,9 @@ pub struct Shifts<'m> {
     edge: Vec<u32>,
 }
 
+/// How far the stretches at a node may be from their edges, metres, in the order of its edges and their pieces.
+pub struct Limits(SmallVec<[f64; 16]>);
+
 /// Hands clean line work to `work`, and takes over where nodes are afterwards; nothing if no line may
 /// be moved. Ids stay, so points may come out of their order.
 ///
@@ -124,21 +127,20 @@ impl<'m> Shifts<'m> {
         [to[0] - at[0], to[1] - at[1]]
     }
 
-    /// Moves a node by so many metres, if the way is clear, and no stretch at it comes farther from
-    /// its edge than `share` of its tolerance, or than it is.
-    pub fn shift(&mut self, node: u32, by: Xy, share: f64) -> bool {
+    /// Moves a node by so many metres, if the way is clear, and no stretch at it comes farther from its edge than
+    /// `limits` allow, which are of the node where it is.
+    pub fn shift(&mut self, node: u32, by: Xy, limits: &Limits) -> bool {
         let (at, measure) = (self.at_m(node), self.graph.measure);
-        let limits_m = self.limits_m(node, share);
         let to = measure.on_grid([at[0] + by[0], at[1] + by[1]]);
-        let mut limits_m = limits_m.into_iter();
+        let mut limits_m = limits.0.iter();
         self.graph.shift_if(node, to, |piece, a, b| {
             let limit_m = limits_m.next().expect("one for each stretch");
-            measure.deviation_m(piece, a, b) <= limit_m
+            measure.deviation_m(piece, a, b) <= *limit_m
         })
     }
 
-    /// How far each stretch at a node may be from its edge, in the order of its edges and their pieces.
-    fn limits_m(&self, node: u32, share: f64) -> SmallVec<[f64; 16]> {
+    /// How far each stretch at a node may be from its edge: `share` of its tolerance, or as far as it is.
+    pub fn limits(&self, node: u32, share: f64) -> Limits {
         let (graph, measure) = (&self.graph, self.graph.measure);
         let star = graph.star[node as usize].iter();
         let limits_m = star.flat_map(|&edge| {
@@ -149,7 +151,7 @@ impl<'m> Shifts<'m> {
                 usual_m.max(measure.deviation_m(piece, a, b))
             })
         });
-        limits_m.collect()
+        Limits(limits_m.collect())
     }
 
     fn write(&self, arrangement: &mut Arrangement) {

@@ -89,14 +89,22 @@ impl<'t> Rings<'t> {
         worths.fold(f64::INFINITY, f64::min)
     }
 
-    /// The least worth around a node; some value below `enough` as soon as it is known to be less.
-    pub(super) fn least(&self, node: u32, enough: f64) -> f64 {
-        let mut least = f64::INFINITY;
+    /// The least worth around a node that some ring follows, and the ring that has it.
+    pub(super) fn poorest_at(&self, node: u32) -> (f64, u32) {
+        let rings = self.at(node).iter().copied();
+        let worths = rings.map(|ring| (self.worth(ring), ring));
+        (worths.min_by(|a, b| a.0.total_cmp(&b.0))).expect("a node of a ring")
+    }
+
+    /// The least worth around a node; some value below `enough` as soon as it is known to be less. `first`: the ring
+    /// that most probably is.
+    pub(super) fn least(&self, node: u32, first: u32, enough: f64) -> f64 {
+        let mut least = self.worth(first);
         for &ring in self.at(node) {
-            least = least.min(self.worth(ring));
             if least < enough {
                 break;
             }
+            least = least.min(self.worth(ring));
         }
         least
     }

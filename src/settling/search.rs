@@ -34,6 +34,10 @@ const GAIN: f64 = 1e-3;
 pub(super) fn search(rings: &mut Rings, shifts: &mut Shifts, min_edge: f64) -> Vec<bool> {
     let mut moved = vec![false; rings.way.len()];
     let mut doubtful: Vec<u32> = (0..rings.len()).collect();
+    // when a ring last changed, and when a node was last tried: where nothing has changed since, it would fail again
+    let mut changed = vec![1_u32; rings.len() as usize];
+    let mut tried = vec![0_u32; rings.way.len()];
+    let mut now = 1;
     for _ in 0..SWEEPS {
         doubtful.retain(|&ring| rings.worth(ring) < POOR);
         let nodes = doubtful.iter().flat_map(|&ring| rings.nodes_of(ring));
@@ -42,8 +46,16 @@ pub(super) fn search(rings: &mut Rings, shifts: &mut Shifts, min_edge: f64) -> V
         nodes.dedup();
         let mut any = false;
         for node in nodes {
+            let mut around = rings.at(node).iter();
+            if !around.any(|&ring| changed[ring as usize] > tried[node as usize]) {
+                continue;
+            }
+            tried[node as usize] = now;
+            now += 1;
             if improve(rings, node, shifts, min_edge) {
-                doubtful.extend(rings.at(node));
+                let around = rings.at(node);
+                around.iter().for_each(|&ring| changed[ring as usize] = now);
+                doubtful.extend(around);
                 moved[node as usize] = true;
                 any = true;
             }
@@ -60,12 +72,12 @@ pub(super) fn search(rings: &mut Rings, shifts: &mut Shifts, min_edge: f64) -> V
 /// Searches a better least worth around one node; true if it moved.
 fn improve(rings: &mut Rings, node: u32, shifts: &mut Shifts, min_edge: f64) -> bool {
     let size_m = rings.size_m(node);
-    let mut best = rings.least(node, f64::NEG_INFINITY);
     let least_edge = rings.shortest_on_lines(node).min(min_edge);
     let mut step_m = STEP * size_m;
     let mut has_moved = false;
     for _ in 0..STEPS {
         let way = rings.way[node as usize];
+        let (worth, poorest) = rings.poorest_at(node);
         let mut found: Vec<(f64, Xy)> = Vec::new();
         for [x, y] in COMPASS {
             let by = shifts.open_to(node, [step_m * x, step_m * y]);
@@ -74,30 +86,34 @@ fn improve(rings: &mut Rings, node: u32, shifts: &mut Shifts, min_edge: f64) -> 
                 continue;
             }
             rings.way[node as usize] = to;
-            let value = rings.least(node, best + GAIN);
-            if value >= best + GAIN && rings.shortest_on_lines(node) >= least_edge {
+            let value = rings.least(node, poorest, worth + GAIN);
+            if value >= worth + GAIN && rings.shortest_on_lines(node) >= least_edge {
                 found.push((value, by));
             }
         }
         rings.way[node as usize] = way;
         // equal ones in the order of the compass
         found.sort_by(|a, b| b.0.total_cmp(&a.0));
-        if found.iter().any(|&(_, by)| go(rings, node, by, shifts)) {
-            best = rings.least(node, f64::NEG_INFINITY);
-            has_moved = true;
-        } else {
+        let went = go(rings, node, &found, shifts);
+        has_moved |= went;
+        if !went {
             step_m *= 0.5;
         }
     }
     has_moved
 }
 
-/// Moves a node by so many metres, if clean-up allows it.
-fn go(rings: &mut Rings, node: u32, by: Xy, shifts: &mut Shifts) -> bool {
-    let is_allowed = shifts.shift(node, by, SHARE);
-    if is_allowed {
-        let way = &mut rings.way[node as usize];
-        *way = [way[0] + by[0], way[1] + by[1]];
+/// Moves a node the first of these ways, each in metres, that clean-up allows; false if there is none.
+fn go(rings: &mut Rings, node: u32, ways: &[(f64, Xy)], shifts: &mut Shifts) -> bool {
+    if ways.is_empty() {
+        return false;
     }
-    is_allowed
+    let limits = shifts.limits(node, SHARE);
+    let mut ways = ways.iter();
+    let Some((_, by)) = ways.find(|&&(_, by)| shifts.shift(node, by, &limits)) else {
+        return false;
+    };
+    let way = &mut rings.way[node as usize];
+    *way = [way[0] + by[0], way[1] + by[1]];
+    true
 }
