@@ -1,8 +1,8 @@
-//! Stretches that no edge carries, since an edge of the same line is within tolerance of them.
+//! Stretches that are not within tolerance of an edge that carries them, but of another one of the same line.
 //!
-//! Merging leaves them where a line turns back on itself or ends, and `audit` takes them for covered. They have no
-//! stations on the edge that covers them. So whoever moves a node by what its own stretches allow may leave them
-//! behind, and the nodes of such edges have to stay.
+//! Merging leaves them where a line turns back on itself or ends, with no edge or a far one, and `audit` takes them for
+//! covered. So whoever moves a node by what its own stretches allow may leave them behind: the nodes of edges that
+//! cover such a stretch, or carry it, have to stay.
 
 use crate::cleanup::audit::Stretch;
 use crate::cleanup::audit::carriers;
@@ -10,13 +10,14 @@ use crate::cleanup::audit::stretches;
 use crate::cleanup::audit::subtract;
 use crate::cleanup::audit::uncovered;
 use crate::cleanup::graph::Graph;
+use crate::cleanup::measure::ROUNDING_M;
 use crate::cleanup::measure::to_segment;
 use crate::geometry::point::Xy;
 use crate::geometry::quad::cross;
 use crate::noding::arrangement::Piece;
 
-/// What no edge carries of the constraint lines: between the ends of a line and its stretches, sorted. Also what was
-/// dropped, or lies outside of the domain.
+/// What no edge near enough carries of the constraint lines, sorted. Also what was dropped, or lies outside of the
+/// domain.
 pub(super) fn gaps(graph: &Graph) -> Vec<Stretch> {
     let measure = graph.measure;
     let lines = 0..measure.domain.lines.len() as u32;
@@ -24,15 +25,18 @@ pub(super) fn gaps(graph: &Graph) -> Vec<Stretch> {
         .filter(|&line| !measure.is_rim(line))
         .map(|line| (line, 0.0, measure.length_m(line)))
         .collect();
-    let live = graph.edges.iter().filter(|edge| edge.alive);
-    let there = stretches(measure, live.flat_map(|edge| &edge.pieces));
-    subtract(&whole, &there)
+    let near = pieces(graph).filter(|&(edge, piece)| is_near(graph, edge, piece));
+    let near: Vec<&Piece> = near.map(|it| it.1).collect();
+    subtract(&whole, &stretches(measure, near.into_iter()))
 }
 
-/// The nodes of edges that may cover a part of a gap, sorted. O(gaps and what is near them).
+/// The nodes of edges that may cover a part of a gap, or carry it, sorted. O(gaps and what is near them).
 pub(super) fn nodes_beside(graph: &Graph, gaps: &[Stretch]) -> Vec<u32> {
     let measure = graph.measure;
-    let mut nodes = Vec::new();
+    let far = pieces(graph).filter(|&(edge, piece)| !is_near(graph, edge, piece));
+    let mut nodes: Vec<u32> = far
+        .flat_map(|(edge, _)| graph.edges[edge as usize].ends)
+        .collect();
     for &(line, from_m, to_m) in gaps {
         let limit_m = measure.tolerance_m[line as usize];
         let gap = Piece { line, from_m, to_m };
@@ -57,6 +61,19 @@ pub(super) fn nodes_beside(graph: &Graph, gaps: &[Stretch]) -> Vec<u32> {
     nodes.sort_unstable();
     nodes.dedup();
     nodes
+}
+
+/// All pieces, with their edges.
+fn pieces<'g>(graph: &'g Graph) -> impl Iterator<Item = (u32, &'g Piece)> {
+    let live = (0..).zip(&graph.edges).filter(|(_, edge)| edge.alive);
+    live.flat_map(|(id, edge)| edge.pieces.iter().map(move |piece| (id, piece)))
+}
+
+/// True if a stretch is within tolerance of the edge that carries it.
+fn is_near(graph: &Graph, edge: u32, piece: &Piece) -> bool {
+    let (a, b) = graph.ends_m(edge);
+    let limit_m = graph.measure.tolerance_m[piece.line as usize];
+    graph.measure.deviation_m(piece, a, b) <= limit_m + ROUNDING_M
 }
 
 /// How much of the gaps is beyond tolerance of all edges of its line, metres.

@@ -123,10 +123,10 @@ struct Faces<'g, 'm> {
     /// Half-edge (edge << 1 | side) -> walk.
     cycle_of: Vec<u32>,
     cycles: Vec<Cycle>,
-    /// Edges by the horizontal strips that they come into, CSR.
-    strip_start: Vec<u32>,
-    strip_edges: Vec<u32>,
-    bottom_m: f64,
+    /// By walk, the face that it bounds: its own one if it is an outer walk, none if that is the outside of all.
+    face_of: Vec<Option<u32>>,
+    /// West of this there is nothing, local metres.
+    west_m: f64,
 }
 
 impl<'g, 'm> Faces<'g, 'm> {
@@ -135,16 +135,15 @@ impl<'g, 'm> Faces<'g, 'm> {
             graph,
             cycle_of: vec![u32::MAX; 2 * graph.edges.len()],
             cycles: Vec::new(),
-            strip_start: Vec::new(),
-            strip_edges: Vec::new(),
-            bottom_m: 0.0,
+            face_of: Vec::new(),
+            west_m: f64::INFINITY,
         };
         for half in 0..made.cycle_of.len() as u32 {
             if made.cycle_of[half as usize] == u32::MAX {
                 made.walk(half);
             }
         }
-        made.fill_strips();
+        made.name_faces();
         made
     }
 
@@ -174,74 +173,64 @@ impl<'g, 'm> Faces<'g, 'm> {
         self.cycles.push(cycle);
     }
 
-    fn strip(&self, y_m: f64) -> usize {
-        let strips = self.strip_start.len().saturating_sub(2);
-        (((y_m - self.bottom_m) / self.graph.measure.default_m).max(0.0) as usize).min(strips)
+    /// The outside of a part that hangs on nothing is of the face that is seen left of its leftmost node. That one's walk
+    /// begins farther left, so it is named before.
+    fn name_faces(&mut self) {
+        let mut order: Vec<usize> = (0..self.cycles.len()).collect();
+        order.sort_unstable_by_key(|&id| self.cycles[id].first);
+        let first = order.first().map(|&id| self.cycles[id].first);
+        self.west_m = first.map_or(0.0, |it| self.graph.measure.metres(it)[0]);
+        self.face_of = vec![None; self.cycles.len()];
+        for id in order {
+            let cycle = &self.cycles[id];
+            let [x, y] = self.graph.measure.metres(cycle.first);
+            self.face_of[id] = match cycle.area_cells2 > 0 {
+                true => Some(id as u32),
+                false => (self.seen_left([x - 1e-9, y]))
+                    .and_then(|half| self.face_of[self.cycle_of[half as usize] as usize]),
+            };
+        }
     }
 
-    fn fill_strips(&mut self) {
-        let graph = self.graph;
-        let heights = |edge: usize| {
-            let (a, b) = graph.ends_m(edge as u32);
-            [a[1].min(b[1]), a[1].max(b[1])]
-        };
-        let all = 0..graph.edges.len();
-        let spans = all.clone().map(heights);
-        let [low, high] = spans.fold([f64::INFINITY, f64::NEG_INFINITY], |it, [low, high]| {
-            [it[0].min(low), it[1].max(high)]
-        });
-        self.bottom_m = low;
-        let strips = ((high - low) / graph.measure.default_m).max(0.0) as usize + 1;
-        self.strip_start = vec![0; strips + 1];
-        let mut entries: Vec<(u32, u32)> = Vec::new();
-        for edge in all {
-            let [low, high] = heights(edge).map(|y| self.strip(y));
-            entries.extend((low..=high).map(|strip| (strip as u32, edge as u32)));
-        }
-        entries.sort_unstable();
-        for (strip, _) in &entries {
-            self.strip_start[*strip as usize + 1] += 1;
-        }
-        for strip in 0..strips {
-            self.strip_start[strip + 1] += self.strip_start[strip];
-        }
-        self.strip_edges = entries.into_iter().map(|it| it.1).collect();
-    }
-
-    /// The half-edge that one sees first when looking left from `p`.
+    /// The half-edge that one sees first when looking left from just above `p`: as far as it takes, four times as far
+    /// each time.
     fn seen_left(&self, p: Xy) -> Option<u32> {
-        let strip = self.strip(p[1]);
-        let edges = self.strip_start[strip] as usize..self.strip_start[strip + 1] as usize;
-        let mut best: Option<(f64, u32)> = None;
-        for &edge in &self.strip_edges[edges] {
-            let (a, b) = self.graph.ends_m(edge);
-            if (a[1] > p[1]) == (b[1] > p[1]) {
-                continue;
+        let (graph, measure) = (self.graph, self.graph.measure);
+        let mut reach_m = measure.default_m;
+        loop {
+            let west_m = (p[0] - reach_m).max(self.west_m);
+            let [from, to] = [[west_m, p[1]], p].map(|it| measure.on_grid(it));
+            // where it is seen, and how far right it leads on the way up: of two at one place, that one is in front
+            let mut best: Option<([f64; 2], u32)> = None;
+            graph.index.any(from, to, 1.0, |held| {
+                let (a, b) = graph.ends_m(held.edge);
+                if (a[1] > p[1]) == (b[1] > p[1]) {
+                    return false;
+                }
+                let slope = (b[0] - a[0]) / (b[1] - a[1]);
+                let seen = [a[0] + (p[1] - a[1]) * slope, slope];
+                if seen[0] < p[0] && best.is_none_or(|it| seen > it.0) {
+                    // p is on its right if it leads up, on its left if it leads down
+                    best = Some((seen, held.edge << 1 | u32::from(b[1] > a[1])));
+                }
+                false
+            });
+            // what was not looked for may be in front of what is farther away
+            let is_sure = best.is_some_and(|it| it.0[0] >= west_m);
+            if is_sure || west_m <= self.west_m {
+                return best.map(|it| it.1);
             }
-            let x = a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
-            if x < p[0] && best.is_none_or(|it| x > it.0) {
-                // p is on its right if it leads up, on its left if it leads down
-                best = Some((x, edge << 1 | u32::from(b[1] > a[1])));
-            }
+            reach_m *= 4.0;
         }
-        best.map(|it| it.1)
     }
 
     /// The face in which `p` lies, if that is a part of the domain.
     fn face_around(&self, p: Xy) -> Option<u32> {
-        let mut half = self.seen_left(p)?;
+        let half = self.seen_left(p)?;
         let edge = &self.graph.edges[(half >> 1) as usize];
-        if !edge.inside[(half & 1) as usize] {
-            return None;
-        }
-        loop {
-            let cycle = &self.cycles[self.cycle_of[half as usize] as usize];
-            if cycle.area_cells2 > 0 {
-                return Some(self.cycle_of[half as usize]);
-            }
-            // the outside of a part that hangs on nothing: on from its leftmost node
-            let [x, y] = self.graph.measure.metres(cycle.first);
-            half = self.seen_left([x - 1e-9, y])?;
+        match edge.inside[(half & 1) as usize] {
+            true => self.face_of[self.cycle_of[half as usize] as usize],
+            false => None,
         }
     }
 

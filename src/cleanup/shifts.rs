@@ -34,8 +34,8 @@ pub struct Limits(SmallVec<[f64; 16]>);
 /// Hands clean line work to `work`, and takes over where nodes are afterwards; nothing if no line may
 /// be moved. Ids stay, so points may come out of their order.
 ///
-/// Edges without pieces (seams, rungs) are not lines: their ends stay. So do the nodes of edges that cover a stretch which
-/// they do not carry.
+/// Edges without pieces (seams, rungs) are not lines: their ends stay. So do the nodes of edges that cover a stretch for
+/// the one that should carry it (`gaps`).
 pub fn shift(
     domain: &Domain,
     sizes: &SizeWish,

@@ -148,7 +148,7 @@ pub struct BuildArgs {
     #[arg(long)]
     pub longest_rung: Option<f64>,
     /// Rounds in which nodes of lines move to where elements are better, within a quarter of the size
-    /// (or half of the tolerance); each takes about as long as meshing. 0: they stay where clean-up
+    /// (or half of the tolerance); each takes once or twice as long as meshing. 0: they stay where clean-up
     /// left them. Default: 2.
     #[arg(long, value_name = "ROUNDS")]
     pub settle: Option<u32>,

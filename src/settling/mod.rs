@@ -40,7 +40,7 @@
 //! measures; here with a tolerance band in place of the curve).
 //!
 //! # Cost
-//! A round meshes, and a second one what the first one touched: one to two times the time of meshing
+//! A round meshes, and a second one what the first one touched; nodes move on one core: one to four times the time of meshing
 //! in all. Memory: 130 bytes for each quad at a node of the line work or next to one, which follows the
 //! input.
 //!
