@@ -77,7 +77,7 @@
 //!
 //! # Not here
 //! Crossings (`noding`), sub-domains and curves (`partition`), what elements think of where nodes are
-//! (`settling`, by way of [`shifts`]), chords of curves (none: nodes are
+//! (`settling`, by way of [`shifts`], which keeps what `gaps` names where it is), chords of curves (none: nodes are
 //! mesh nodes, so tolerance is used up here).
 
 mod attempt;
