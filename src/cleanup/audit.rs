@@ -172,10 +172,7 @@ fn is_a_node(graph: &Graph, line: LineId, from_m: f64, to_m: f64) -> bool {
     if !is_whole || to_m - from_m > graph.measure.size_m[line as usize] {
         return false;
     }
-    let mut way: Vec<Xy> = vec![graph.measure.point(line, from_m)];
-    let piece = Piece { line, from_m, to_m };
-    way.extend(graph.measure.vertices(&piece));
-    way.push(graph.measure.point(line, to_m));
+    let way: Vec<Xy> = graph.measure.way(&Piece { line, from_m, to_m }).collect();
     let cell_m = graph.measure.grid().cell_m;
     let at = graph.measure.on_grid(way[0]);
     (graph.index).any(at, at, limit / cell_m, |held| {
@@ -206,11 +203,8 @@ pub(super) fn displacements(graph: &Graph) -> Tally {
                 all.fold(f64::INFINITY, f64::min)
             };
             let size_m = graph.measure.size_m[piece.line as usize];
-            let (low, high) = (piece.from_m.min(piece.to_m), piece.from_m.max(piece.to_m));
             way.clear();
-            way.push(graph.measure.point(piece.line, low));
-            way.extend(graph.measure.vertices(piece));
-            way.push(graph.measure.point(piece.line, high));
+            way.extend(graph.measure.way(piece));
             for pair in way.windows(2) {
                 let [u, v] = [pair[0], pair[1]];
                 let length = distance(u, v);

@@ -104,9 +104,7 @@ pub(super) fn make_even(graph: &mut Graph, even: &Even, nodes: &[u32]) {
             let found = left_of(graph, even, edge, side, |edge, side| {
                 seen[edge as usize][side] = true;
             });
-            if let Beside::Face(face) = found
-                && face.length <= even.small
-            {
+            if let Some(face) = small(even, found) {
                 let from = |it: &(u32, u32)| (graph.point(it.1), it.0, it.1);
                 let first = face.walk.iter().map(from).min();
                 let (at, edge, node) = first.expect("a walk has edges");
@@ -134,7 +132,11 @@ pub(super) fn make_even(graph: &mut Graph, even: &Even, nodes: &[u32]) {
 }
 
 fn small_face(graph: &Graph, even: &Even, edge: u32, side: usize) -> Option<Face> {
-    match beside(graph, even, edge, side) {
+    small(even, beside(graph, even, edge, side))
+}
+
+fn small(even: &Even, found: Beside) -> Option<Face> {
+    match found {
         Beside::Face(face) if face.length <= even.small => Some(face),
         _ => None,
     }

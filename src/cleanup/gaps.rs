@@ -16,73 +16,73 @@ use crate::geometry::point::Xy;
 use crate::geometry::quad::cross;
 use crate::noding::arrangement::Piece;
 
-/// What no edge near enough carries of the constraint lines, sorted. Also what was dropped, or lies outside of the
-/// domain.
-pub(super) fn gaps(graph: &Graph) -> Vec<Stretch> {
+/// What no edge near enough carries.
+pub(super) struct Gaps {
+    /// Of constraint lines, sorted. Also what was dropped, or lies outside of the domain.
+    stretches: Vec<Stretch>,
+    /// The ends of edges that carry a stretch from too far away.
+    carriers: Vec<u32>,
+}
+
+/// Looks for all gaps. O(stretches).
+pub(super) fn gaps(graph: &Graph) -> Gaps {
     let measure = graph.measure;
+    let (mut near, mut carriers) = (Vec::new(), Vec::new());
+    for edge in graph.edges.iter().filter(|edge| edge.alive) {
+        let [a, b] = edge.ends.map(|node| graph.metres(node));
+        for piece in &edge.pieces {
+            let limit_m = measure.tolerance_m[piece.line as usize];
+            match measure.deviation_m(piece, a, b) <= limit_m + ROUNDING_M {
+                true => near.push(piece),
+                false => carriers.extend(edge.ends),
+            }
+        }
+    }
     let lines = 0..measure.domain.lines.len() as u32;
     let whole: Vec<Stretch> = lines
         .filter(|&line| !measure.is_rim(line))
         .map(|line| (line, 0.0, measure.length_m(line)))
         .collect();
-    let near = pieces(graph).filter(|&(edge, piece)| is_near(graph, edge, piece));
-    let near: Vec<&Piece> = near.map(|it| it.1).collect();
-    subtract(&whole, &stretches(measure, near.into_iter()))
-}
-
-/// The nodes of edges that may cover a part of a gap, or carry it, sorted. O(gaps and what is near them).
-pub(super) fn nodes_beside(graph: &Graph, gaps: &[Stretch]) -> Vec<u32> {
-    let measure = graph.measure;
-    let far = pieces(graph).filter(|&(edge, piece)| !is_near(graph, edge, piece));
-    let mut nodes: Vec<u32> = far
-        .flat_map(|(edge, _)| graph.edges[edge as usize].ends)
-        .collect();
-    for &(line, from_m, to_m) in gaps {
-        let limit_m = measure.tolerance_m[line as usize];
-        let gap = Piece { line, from_m, to_m };
-        let mut way: Vec<Xy> = vec![measure.point(line, from_m)];
-        way.extend(measure.vertices(&gap));
-        way.push(measure.point(line, to_m));
-        for pair in way.windows(2) {
-            let [p, q] = [pair[0], pair[1]].map(|it| measure.on_grid(it));
-            let reach = limit_m / measure.grid().cell_m;
-            graph.index.any(p, q, reach, |held| {
-                let pieces = &graph.edges[held.edge as usize].pieces;
-                let (a, b) = graph.ends_m(held.edge);
-                if pieces.iter().any(|piece| piece.line == line)
-                    && apart_m([pair[0], pair[1]], [a, b]) <= limit_m
-                {
-                    nodes.extend(held.ends);
-                }
-                false
-            });
-        }
+    Gaps {
+        stretches: subtract(&whole, &stretches(measure, near.into_iter())),
+        carriers,
     }
-    nodes.sort_unstable();
-    nodes.dedup();
-    nodes
 }
 
-/// All pieces, with their edges.
-fn pieces<'g>(graph: &'g Graph) -> impl Iterator<Item = (u32, &'g Piece)> {
-    let live = (0..).zip(&graph.edges).filter(|(_, edge)| edge.alive);
-    live.flat_map(|(id, edge)| edge.pieces.iter().map(move |piece| (id, piece)))
-}
+impl Gaps {
+    /// The nodes of edges that may cover a part of a gap, or carry it, some more than once. O(gaps and what is near
+    /// them).
+    pub(super) fn nodes_beside(&self, graph: &Graph) -> Vec<u32> {
+        let measure = graph.measure;
+        let mut nodes = self.carriers.clone();
+        for &(line, from_m, to_m) in &self.stretches {
+            let limit_m = measure.tolerance_m[line as usize];
+            let reach = limit_m / measure.grid().cell_m;
+            let way: Vec<Xy> = measure.way(&Piece { line, from_m, to_m }).collect();
+            for pair in way.windows(2) {
+                let [p, q] = [pair[0], pair[1]].map(|it| measure.on_grid(it));
+                graph.index.any(p, q, reach, |held| {
+                    let mut pieces = graph.edges[held.edge as usize].pieces.iter();
+                    let (a, b) = graph.ends_m(held.edge);
+                    if pieces.any(|piece| piece.line == line)
+                        && apart_m([pair[0], pair[1]], [a, b]) <= limit_m
+                    {
+                        nodes.extend(held.ends);
+                    }
+                    false
+                });
+            }
+        }
+        nodes
+    }
 
-/// True if a stretch is within tolerance of the edge that carries it.
-fn is_near(graph: &Graph, edge: u32, piece: &Piece) -> bool {
-    let (a, b) = graph.ends_m(edge);
-    let limit_m = graph.measure.tolerance_m[piece.line as usize];
-    graph.measure.deviation_m(piece, a, b) <= limit_m + ROUNDING_M
-}
-
-/// How much of the gaps is beyond tolerance of all edges of its line, metres.
-pub(super) fn uncovered_m(graph: &Graph, gaps: &[Stretch], slack_m: f64) -> f64 {
-    let carriers = carriers(graph);
-    let beyond = gaps
-        .iter()
-        .flat_map(|gap| uncovered(graph, &carriers, gap, slack_m));
-    beyond.map(|(_, from_m, to_m)| to_m - from_m).sum()
+    /// How much of the gaps is beyond tolerance of all edges of its line in a graph, metres.
+    pub(super) fn uncovered_m(&self, graph: &Graph) -> f64 {
+        let carriers = carriers(graph);
+        let gaps = self.stretches.iter();
+        let beyond = gaps.flat_map(|gap| uncovered(graph, &carriers, gap, 0.0));
+        beyond.map(|(_, from_m, to_m)| to_m - from_m).sum()
+    }
 }
 
 /// The distance between two segments.

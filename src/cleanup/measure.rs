@@ -13,6 +13,7 @@ use crate::geometry::grid::Grid;
 use crate::geometry::point::Point;
 use crate::geometry::point::Xy;
 use crate::noding::arrangement::Piece;
+use std::iter::once;
 
 /// The input lines with their stations, sizes, ranks and tolerances, in metres.
 pub(super) struct Measure<'a> {
@@ -235,6 +236,13 @@ impl<'a> Measure<'a> {
         (vertices[from..].iter())
             .take_while(move |it| it.station_m < high)
             .map(|it| it.at)
+    }
+
+    /// A stretch from end to end, in the direction of the line.
+    pub(super) fn way(&self, piece: &Piece) -> impl Iterator<Item = Xy> {
+        let (low, high) = (piece.from_m.min(piece.to_m), piece.from_m.max(piece.to_m));
+        let [first, last] = [low, high].map(|station_m| self.point(piece.line, station_m));
+        once(first).chain(self.vertices(piece)).chain(once(last))
     }
 
     /// The station between `low_m` and `high_m` whose point is nearest to `p`, and how far it is.

@@ -26,9 +26,9 @@
 //! 8. Lines meet only where they come within the sum of their tolerances: those that are everywhere
 //!    farther apart keep their topology.
 //!
-//! On 18 real cases at two sizes each, settling after it, 99 % of the line length lies within .17 to .31 h of its
+//! On 18 real cases at two sizes each, settling after it, 99 % of the line length lies within .21 to .31 h of its
 //! edges (below a quarter of the size but for seven runs with the densest line work), and the 0.1 %
-//! quantile of the sides of the finished meshes is .23 to .62 h.
+//! quantile of the sides of the finished meshes is .23 to .61 h.
 //!
 //! # Needs
 //! An arrangement that is noded and clipped ([`noding::clip()`](crate::noding::clip())).

@@ -46,6 +46,10 @@ pub fn shift(
     let measure = Measure::new(domain, sizes, options);
     if measure.allows_any() {
         let mut shifts = Shifts::of(arrangement, &measure);
+        let graph = &mut shifts.graph;
+        for node in gaps::gaps(graph).nodes_beside(graph) {
+            graph.set_stand(node, Stand::Tied);
+        }
         work(&mut shifts);
         shifts.write(arrangement);
     }
@@ -87,9 +91,6 @@ impl<'m> Shifts<'m> {
             edge.pieces = arrangement.pieces_of(id).into();
         }
         graph.index.take_nodes(&graph.at);
-        for node in gaps::nodes_beside(&graph, &gaps::gaps(&graph)) {
-            graph.set_stand(node, Stand::Tied);
-        }
         for &edge in &others {
             for node in arrangement.edges[edge as usize] {
                 graph.set_stand(node, Stand::Tied);
@@ -171,9 +172,8 @@ impl<'m> Shifts<'m> {
 }
 
 /// Checks that no stretch is farther from its edge than `share` of its tolerance, or than it was; that no less is
-/// covered of what no edge carries; that no
-/// edge has become shorter than the least that is asked for anywhere; rounding aside; and that corners of
-/// the outline stayed.
+/// covered of what no edge carries; that no edge has become shorter than the least that is asked for anywhere;
+/// rounding aside; and that corners of the outline stayed.
 pub fn check(
     domain: &Domain,
     sizes: &SizeWish,
@@ -205,7 +205,7 @@ pub fn check(
         }
     }
     let gaps = gaps::gaps(&was.graph);
-    let [before_m, after_m] = [&was.graph, &is.graph].map(|it| gaps::uncovered_m(it, &gaps, 0.0));
+    let [before_m, after_m] = [&was.graph, &is.graph].map(|it| gaps.uncovered_m(it));
     if after_m > before_m + rounding_m {
         return Err(format!(
             "{after_m} m of lines are beyond tolerance of all edges of theirs, and were {before_m} m"

@@ -7,6 +7,7 @@ use crate::pipeline::error::Error;
 use crate::pipeline::job::Job;
 use crate::pipeline::plan::Plan;
 use crate::pipeline::progress::Stopwatch;
+use crate::pipeline::tiles::ONE;
 use crate::settling;
 use crate::settling::LARGE_QUADS;
 use crate::settling::Settled;
@@ -75,7 +76,7 @@ fn try_out(
         let quads = city.partition.subdomains[subdomain].area_m2 / sizes.default_m.powi(2);
         quads > LARGE_QUADS
     };
-    let ids = trials.par_iter_mut().enumerate();
+    let ids = trials.par_iter_mut().with_max_len(ONE).enumerate();
     ids.for_each(|(subdomain, trial)| {
         let is_wanted = last.is_none_or(|it| !is_large(subdomain) && trial.sees(&it.moved));
         if is_wanted {

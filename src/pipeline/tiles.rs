@@ -21,7 +21,7 @@ const TILES_A_SIDE: i64 = 12;
 
 /// Each part is a job of its own. With more in a job, one core is still busy with its last ones when the others have
 /// none left: half a second on malta-osm at 35.2.
-const ONE: usize = 1;
+pub(super) const ONE: usize = 1;
 
 /// Side of a tile, cells.
 pub(super) fn tile_cells(job: &Job, domain: &Domain) -> i32 {

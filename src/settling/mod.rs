@@ -8,8 +8,9 @@
 //! 1. Topology, ids and counts stay: edges join the same nodes and carry the same lines. Only points
 //!    and the stations of stretches change, so points may be out of their order afterwards.
 //! 2. What clean-up promises of distances holds: no stretch comes farther from its edge than half of its
-//!    tolerance (a quarter of the size), or than clean-up had left it. Corners of the outline and the ends of seams
-//!    and rungs stay; other nodes of the outline move along it.
+//!    tolerance (a quarter of the size), or than clean-up had left it, and what covers a stretch for an edge that is too
+//!    far away stays. Corners of the outline and the ends of seams and rungs stay; other nodes of the outline move
+//!    along it.
 //! 3. A node moves by at most [`REACH`] of the size in one round.
 //! 4. The poorest quad of the trial meshes is no poorer afterwards, and no edge becomes shorter than
 //!    the least that is asked for along the finest line beside it.
@@ -40,8 +41,8 @@
 //! measures; here with a tolerance band in place of the curve).
 //!
 //! # Cost
-//! A round meshes, and a second one what the first one touched; nodes move on one core: one to four times the time of meshing
-//! in all. Memory: 130 bytes for each quad at a node of the line work or next to one, which follows the
+//! A round meshes, and a second one what the first one touched; nodes move on one core: one to four times the time
+//! of meshing in all. Memory: 130 bytes for each quad at a node of the line work or next to one, which follows the
 //! input.
 //!
 //! # Not here
