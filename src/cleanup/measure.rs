@@ -50,6 +50,9 @@ struct Vertex {
 /// Distances to one place, found in two ways, differ by less than this, metres.
 pub(super) const ROUNDING_M: f64 = 1e-6;
 
+/// Of the tolerance, that is a quarter of the size: what 99 % of the lines are to stay within.
+pub(super) const NEAR: f64 = 0.5;
+
 /// Added to the rank of rings.
 pub(super) const RIM_RANK: f64 = 1e13;
 /// Added to the rank of held lines.
@@ -226,6 +229,27 @@ impl<'a> Measure<'a> {
         // a vertex at the end belongs to it, as it does when its place is asked for
         k += usize::from(k < vertices.len() && vertices[k].station_m <= high.0);
         is_near(k, high)
+    }
+
+    /// How much of a stretch is farther than [`NEAR`] of its tolerance from the edge `a b`, metres; by the middles of
+    /// the quarters of its segments, as `audit` measures, but against this one edge: it is no less.
+    pub(super) fn beyond_m(&self, piece: &Piece, a: Xy, b: Xy) -> f64 {
+        // most are near from end to end
+        if self.fits(piece, a, b, NEAR) {
+            return 0.0;
+        }
+        let limit_m = NEAR * self.tolerance_m[piece.line as usize];
+        let mut beyond_m = 0.0;
+        let mut way = self.way(piece);
+        let mut from = way.next().expect("a stretch has two ends");
+        for to in way {
+            let quarters = [0.125, 0.375, 0.625, 0.875];
+            let places = quarters.map(|t| [0, 1].map(|k| from[k] + t * (to[k] - from[k])));
+            let far = places.iter().filter(|&&p| to_segment(p, a, b).0 > limit_m);
+            beyond_m += 0.25 * far.count() as f64 * distance(from, to);
+            from = to;
+        }
+        beyond_m
     }
 
     /// The vertices of the line strictly inside the stretch, in the direction of the line.

@@ -11,6 +11,7 @@ use crate::cleanup::clear::Sweep;
 use crate::cleanup::edge::Draft;
 use crate::cleanup::edge::Fused;
 use crate::cleanup::graph::Graph;
+use crate::cleanup::measure::ROUNDING_M;
 use crate::cleanup::stations::Absorbed;
 use crate::geometry::point::Point;
 use crate::geometry::point::Xy;
@@ -34,6 +35,37 @@ impl Graph<'_> {
     pub(super) fn shift(&mut self, v: u32, p: Point, share: f64) -> bool {
         let measure = self.measure;
         self.shift_if(v, p, |piece, a, b| measure.fits(piece, a, b, share))
+    }
+
+    /// The same, if no more than `most_m` of its stretches comes farther away than half of their tolerance.
+    pub(super) fn shift_near(&mut self, v: u32, p: Point, share: f64, most_m: f64) -> bool {
+        if most_m == f64::INFINITY {
+            return self.shift(v, p, share);
+        }
+        let measure = self.measure;
+        let mut left_m = most_m + ROUNDING_M;
+        self.shift_if(v, p, |piece, a, b| {
+            let fits = measure.fits(piece, a, b, share);
+            left_m -= if fits {
+                measure.beyond_m(piece, a, b)
+            } else {
+                0.0
+            };
+            fits && left_m >= 0.0
+        })
+    }
+
+    /// How much of the stretches at a node is farther away than half of their tolerance, metres.
+    pub(super) fn beyond_m(&self, node: u32) -> f64 {
+        let star = self.star[node as usize].iter();
+        star.map(|&edge| self.edge_beyond_m(edge)).sum()
+    }
+
+    /// The same of an edge.
+    pub(super) fn edge_beyond_m(&self, edge: u32) -> f64 {
+        let (a, b) = self.ends_m(edge);
+        let pieces = self.edges[edge as usize].pieces.iter();
+        pieces.map(|piece| self.measure.beyond_m(piece, a, b)).sum()
     }
 
     /// Moves node `v` to the free point `p` if `fits` holds for all its stretches and the edges that

@@ -3,6 +3,7 @@
 
 use crate::cleanup::graph::Graph;
 use crate::cleanup::importance::is_rim_corner;
+use crate::cleanup::measure::NEAR;
 use crate::cleanup::measure::ROUNDING_M;
 use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;
@@ -144,15 +145,27 @@ fn stays(graph: &Graph, wanted: &Wanted, node: u32) -> bool {
     is_rim_corner(graph, node) && !graph.star[node as usize].iter().any(is_short)
 }
 
+/// How much of the lines may come farther away than [`NEAR`] of their tolerance for a push, by its length: much for
+/// what is very narrow, little for what nearly has room. (Measured on twelve cities: with no limit, as before, the
+/// displacement that 99 % of the lines stay below is .005 of the size more, for no better cells, and clean-up takes
+/// longer; with 3 it is .0015 less, but the .1 % quantile of the time-step proxy .8 % lower. A limit of half the size for
+/// all pushes takes cells from the narrowest strips: towradgi-anuga .291 > .243.)
+const FAR_FOR_PUSH: f64 = 5.0;
+
 /// Tries the whole step, then a half and a quarter, with each share of the tolerance; returns which
 /// share it took.
 fn pushed(graph: &mut Graph, shares: &[f64], node: u32, push: Xy) -> Option<usize> {
     let at = graph.metres(node);
+    let push_m = distance(push, [0.0; 2]);
     shares.iter().position(|&share| {
+        let most_m = match share <= NEAR {
+            true => f64::INFINITY,
+            false => graph.beyond_m(node).max(FAR_FOR_PUSH * push_m),
+        };
         [STEP, STEP / 2.0, STEP / 4.0].iter().any(|step| {
             let place = [at[0] + step * push[0], at[1] + step * push[1]];
             let p = graph.measure.on_grid(place);
-            graph.shift(node, p, share)
+            graph.shift_near(node, p, share, most_m)
         })
     })
 }

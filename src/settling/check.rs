@@ -10,7 +10,6 @@ use crate::partition::remeasure;
 use crate::partition::subdomains::Partition;
 use crate::settling::REACH;
 use crate::settling::Settled;
-use crate::settling::search::SHARE;
 
 /// Checks one round, which made `after` of `before`; `partition` is that of both.
 ///
@@ -42,7 +41,7 @@ pub fn check(
             .copied()
             .fold(sizes.default_m, f64::max);
     check_moves(&domain.grid, [before, after], settled, reach_m)?;
-    cleanup::shifts::check(domain, sizes, options, [before, after], SHARE)?;
+    cleanup::shifts::check(domain, sizes, options, [before, after])?;
     noding::check::check(&in_order(after)).map_err(|it| it.to_string())?;
     let mut measured = partition.clone();
     remeasure(domain, after, &mut measured);

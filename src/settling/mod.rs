@@ -7,9 +7,9 @@
 //! # Promises
 //! 1. Topology, ids and counts stay: edges join the same nodes and carry the same lines. Only points
 //!    and the stations of stretches change, so points may be out of their order afterwards.
-//! 2. What clean-up promises of distances holds: no stretch comes farther from its edge than half of its
-//!    tolerance (a quarter of the size), or than clean-up had left it, and what covers a stretch for an edge that is too
-//!    far away stays. Corners of the outline and the ends of seams and rungs stay; other nodes of the outline move
+//! 2. What clean-up promises of distances holds: no stretch comes farther from its edge than four fifths of its
+//!    tolerance, or than clean-up had left it; no more than .97 % of their length comes farther away than half of it (a
+//!    quarter of the size), or than clean-up had left; and what covers a stretch for an edge that is too far away stays. Corners of the outline and the ends of seams and rungs stay; other nodes of the outline move
 //!    along it.
 //! 3. A node moves by at most [`REACH`] of the size in one round.
 //! 4. The poorest quad of the trial meshes is no poorer afterwards, and no edge becomes shorter than
@@ -25,7 +25,8 @@
 //! 2. `search`: nodes at quads of little worth (shape, size and shortest side in one number, that of
 //!    `meshing`) are moved by compass search, interior nodes and all other nodes staying, as long as the
 //!    least worth around the node grows. Each step is refused unless [`cleanup::shifts`] finds the way
-//!    clear and all stretches near enough.
+//!    clear and all stretches near enough: within half of their tolerance, but for the poorest quads while lines have
+//!    some of their 1 % to spare.
 //! 3. The same in a second round, after sub-domains of moderate size that were touched have been
 //!    meshed anew.
 //!

@@ -142,11 +142,53 @@ fn what_covers_a_stretch_for_another_edge_stays() {
     // 2 m from what its edge carries, 6 m from the begin of the line
     let mut left = gap.clone();
     left.points[begin] = Point::new(11_000, 20_000);
-    let check = |after: &Arrangement| shifts::check(&square, &sizes, &options, [&gap, after], 0.5);
+    let check = |after: &Arrangement| shifts::check(&square, &sizes, &options, [&gap, after]);
     assert!(check(&left).unwrap_err().contains("beyond tolerance"));
     assert_eq!(check(&gap), Ok(()));
     // its edge carries all of it, but from 6 m aside
     let mut aside = carried.clone();
     aside.points[begin] = Point::new(5_000, 26_000);
     assert!(!may_move(&aside));
+}
+
+/// No more than 1 % of the lines may be farther away than half of their tolerance, and what takes more of them there
+/// says how much.
+#[test]
+fn what_is_far_away_is_counted() {
+    let square = domain(&[
+        (
+            "boundary",
+            vec![(0, 0), (40_000, 0), (40_000, 40_000), (0, 40_000), (0, 0)],
+        ),
+        (
+            "",
+            vec![(5_000, 20_000), (20_000, 20_000), (30_000, 25_000)],
+        ),
+    ]);
+    let (sizes, options) = (SizeWish::uniform(10.0, 1), usual(&square));
+    let before = noded(&square);
+    let is_begin = |p: &Point| *p == Point::new(5_000, 20_000);
+    let begin = before.points.iter().position(is_begin).unwrap() as u32;
+    let mut after = before.clone();
+    shift(&square, &sizes, &options, &mut after, |shifts| {
+        // .97 % of the outline and the line
+        let length_m = 160.0 + 15.0 + 125.0_f64.sqrt();
+        assert!((shifts.spare_m() - 0.0097 * length_m).abs() < 1e-9);
+        let (aside, usual) = ([0.0, 3.0], shifts.limits(begin));
+        assert!(!shifts.shift(begin, aside, &usual), "the tolerance is 5 m");
+        // by a first quarter of 15 m, 2.6 m away in its middle
+        let [less, enough] = [3.7, 3.8].map(|more_m| shifts.wide_limits(begin, more_m));
+        assert!(!shifts.shift(begin, aside, &less));
+        assert!(shifts.shift(begin, aside, &enough));
+        assert!((shifts.beyond_m(begin) - 3.75).abs() < 1e-9);
+        assert!(shifts.spare_m() < 0.0);
+        // back again no one asks
+        assert!(shifts.shift(begin, [0.0, -0.05], &shifts.limits(begin)));
+    });
+    let verdict = shifts::check(&square, &sizes, &options, [&before, &after]);
+    assert!(verdict.unwrap_err().contains("farther away than half"));
+    let mut wide = before.clone();
+    wide.points[begin as usize] = Point::new(5_000, 24_100);
+    let verdict = shifts::check(&square, &sizes, &options, [&before, &wide]);
+    assert!(verdict.unwrap_err().contains("is allowed"));
 }
