@@ -7,6 +7,7 @@ use crate::cleanup::edge::Edge;
 use crate::cleanup::graph::Graph;
 use crate::cleanup::measure::Measure;
 use crate::cleanup::measure::distance;
+use crate::cleanup::measure::quarters;
 use crate::cleanup::measure::to_segment;
 use crate::domain::line::LineId;
 use crate::geometry::point::Xy;
@@ -208,13 +209,8 @@ pub(super) fn displacements(graph: &Graph) -> Tally {
             for pair in way.windows(2) {
                 let [u, v] = [pair[0], pair[1]];
                 let length = distance(u, v);
-                // the distance to a segment is convex along the pair: quarters are fine enough
-                let quarter = |k: u8| {
-                    let t = (f64::from(k) + 0.5) / 4.0;
-                    away_m([u[0] + t * (v[0] - u[0]), u[1] + t * (v[1] - u[1])])
-                };
                 samples.push(Sample {
-                    away_m: [0, 1, 2, 3].map(quarter),
+                    away_m: quarters(u, v).map(away_m),
                     length_m: (length / 4.0) as f32,
                     line: piece.line,
                 });

@@ -243,9 +243,8 @@ impl<'a> Measure<'a> {
         let mut way = self.way(piece);
         let mut from = way.next().expect("a stretch has two ends");
         for to in way {
-            let quarters = [0.125, 0.375, 0.625, 0.875];
-            let places = quarters.map(|t| [0, 1].map(|k| from[k] + t * (to[k] - from[k])));
-            let far = places.iter().filter(|&&p| to_segment(p, a, b).0 > limit_m);
+            let places = quarters(from, to).into_iter();
+            let far = places.filter(|&p| to_segment(p, a, b).0 > limit_m);
             beyond_m += 0.25 * far.count() as f64 * distance(from, to);
             from = to;
         }
@@ -306,6 +305,12 @@ impl<'a> Measure<'a> {
 fn between(one: Vertex, next: Vertex, station_m: f64) -> Xy {
     let t = ((station_m - one.station_m) / (next.station_m - one.station_m)).clamp(0.0, 1.0);
     [0, 1].map(|k| one.at[k] + t * (next.at[k] - one.at[k]))
+}
+
+/// The middles of the quarters of a segment. The distance to an edge is convex along it: they are fine enough.
+#[inline]
+pub(super) fn quarters(u: Xy, v: Xy) -> [Xy; 4] {
+    [0.125, 0.375, 0.625, 0.875].map(|t| [0, 1].map(|k| u[k] + t * (v[k] - u[k])))
 }
 
 /// What a line's role and rule add to its rank. Never negative.

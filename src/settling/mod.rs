@@ -9,8 +9,8 @@
 //!    and the stations of stretches change, so points may be out of their order afterwards.
 //! 2. What clean-up promises of distances holds: no stretch comes farther from its edge than four fifths of its
 //!    tolerance, or than clean-up had left it; no more than .97 % of their length comes farther away than half of it (a
-//!    quarter of the size), or than clean-up had left; and what covers a stretch for an edge that is too far away stays. Corners of the outline and the ends of seams and rungs stay; other nodes of the outline move
-//!    along it.
+//!    quarter of the size), or than clean-up had left; and what covers a stretch for an edge that is too far away stays.
+//!    Corners of the outline and the ends of seams and rungs stay; other nodes of the outline move along it.
 //! 3. A node moves by at most [`REACH`] of the size in one round.
 //! 4. The poorest quad of the trial meshes is no poorer afterwards, and no edge becomes shorter than
 //!    the least that is asked for along the finest line beside it.
@@ -35,8 +35,8 @@
 //! nodes 5.57 and 5.25 %. The displacement that 99 % of the lines stay below grew from .219 to .245 of the size; no run
 //! comes beyond a quarter by it. On the twelve with the densest lines the proxy and edges grow by 4 %.
 //! One round gains four fifths of it, a third a tenth more. Interior nodes moved along with
-//! the others gain nothing. Nodes of the poorest quads moved by up to .4 of the size: 2 % more of the
-//! proxy, but .006 more of the displacement.
+//! the others gain nothing. Nodes of the poorest quads moved by up to .4 of the size, however much of the lines that
+//! took: 2 % more of the proxy, but .006 more of the displacement.
 //!
 //! The idea is that of mesh smoothing with boundary nodes on curves (Knupp 2000, algebraic quality
 //! measures; here with a tolerance band in place of the curve).

@@ -101,12 +101,9 @@ fn what_is_good_stays() {
     assert_eq!(settled.moves(), 0);
 }
 
-/// A bug: clean-up leaves stretches that no edge carries, or one that is too far away, as another of the same line is
-/// near. Settling went by what edges carry, and left such stretches behind: 20 m on liechtenstein-osm at 58.9 of the
-/// first kind, more of the second where the tolerance is a tenth of the size.
-#[test]
-fn what_covers_a_stretch_for_another_edge_stays() {
-    let square = domain(&[
+/// A square of 40 m, and in it a free line with one bend.
+fn square() -> Domain {
+    domain(&[
         (
             "boundary",
             vec![(0, 0), (40_000, 0), (40_000, 40_000), (0, 40_000), (0, 0)],
@@ -115,7 +112,15 @@ fn what_covers_a_stretch_for_another_edge_stays() {
             "",
             vec![(5_000, 20_000), (20_000, 20_000), (30_000, 25_000)],
         ),
-    ]);
+    ])
+}
+
+/// A bug: clean-up leaves stretches that no edge carries, or one that is too far away, as another of the same line is
+/// near. Settling went by what edges carry, and left such stretches behind: 20 m on liechtenstein-osm at 58.9 of the
+/// first kind, more of the second where the tolerance is a tenth of the size.
+#[test]
+fn what_covers_a_stretch_for_another_edge_stays() {
+    let square = square();
     let (sizes, options) = (SizeWish::uniform(10.0, 1), usual(&square));
     let carried = noded(&square);
     let is_begin = |p: &Point| *p == Point::new(5_000, 20_000);
@@ -155,16 +160,7 @@ fn what_covers_a_stretch_for_another_edge_stays() {
 /// says how much.
 #[test]
 fn what_is_far_away_is_counted() {
-    let square = domain(&[
-        (
-            "boundary",
-            vec![(0, 0), (40_000, 0), (40_000, 40_000), (0, 40_000), (0, 0)],
-        ),
-        (
-            "",
-            vec![(5_000, 20_000), (20_000, 20_000), (30_000, 25_000)],
-        ),
-    ]);
+    let square = square();
     let (sizes, options) = (SizeWish::uniform(10.0, 1), usual(&square));
     let before = noded(&square);
     let is_begin = |p: &Point| *p == Point::new(5_000, 20_000);
