@@ -21,8 +21,9 @@
 //! and `score` ranks it; an excellent patch ends the `contest` early.
 //!
 //! - `mapping`: one of the `patterns` (grid, stars of 3, 5 and 6 `spokes`, a 3-5 `pair`) over the
-//!   whole of a sub-domain with few sides; else `submap`: where all walks close on a lattice, its cells,
-//!   without irregular nodes (Whiteley and others 1996).
+//!   whole of a sub-domain with few sides; else `submap`: where all walks close on a lattice (`course`), its
+//!   `lattice_cells`, without irregular nodes (Whiteley and others 1996); else `turned_rows`: where the outer walk
+//!   nearly closes, such cells and a few rows that turn (`row`), with two irregular nodes each.
 //! - `catalogue`: loops of up to twelve nodes that no pattern suits, by the best of all their
 //!   quadrangulations.
 //! - `looping`: `bridges` join all walks to one loop; `splitting` halves it by the best line again
@@ -62,6 +63,7 @@ mod contour;
 mod core;
 mod core_quads;
 mod corridor;
+mod course;
 mod draft;
 mod edits;
 mod finish;
@@ -70,6 +72,7 @@ mod join;
 mod kernel;
 mod last_resort;
 mod lattice;
+mod lattice_cells;
 mod lift;
 mod looping;
 mod mapping;
@@ -79,6 +82,7 @@ pub mod patch;
 mod patterns;
 mod refill;
 mod regular;
+mod row;
 mod rows;
 mod scatter;
 pub mod score;
@@ -91,6 +95,7 @@ mod strip;
 mod strip_border;
 mod submap;
 mod triangulate;
+mod turned_rows;
 mod visits;
 mod windows;
 
@@ -130,7 +135,7 @@ impl Options {
                 Method::Looping,
                 Method::Indirect,
             ],
-            good_enough: 0.8,
+            good_enough: 0.85,
         }
     }
 }
@@ -173,7 +178,9 @@ pub fn mesh(loops: &Loops, options: &Options) -> Result<Meshed, Defect> {
 
 fn draft(method: Method, visits: &Visits, loops: &Loops) -> Option<Draft> {
     match method {
-        Method::Mapping => mapping::mesh(visits, loops).or_else(|| submap::mesh(visits, loops)),
+        Method::Mapping => mapping::mesh(visits, loops)
+            .or_else(|| submap::mesh(visits, loops))
+            .or_else(|| turned_rows::mesh(visits, loops)),
         Method::Looping => looping::mesh(visits, loops.size_m),
         Method::Strip => strip::mesh(visits, loops),
         Method::Indirect => {

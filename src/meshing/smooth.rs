@@ -30,8 +30,9 @@ const LOCAL_REST: f32 = 1e-2;
 /// A shorter step, in wished lengths, is not taken: no rest is as small.
 const LEAST_STEP: f64 = 1e-3;
 
-/// Sets the wished edge length of every node: on the outline half the length of its two edges,
-/// inside the mean of the neighbours drawn towards `size_m`.
+/// Sets the wished edge length of every node: on the outline half the length of its two edges, at most
+/// `size_m`, inside the mean of the neighbours drawn towards `size_m`. (Without that limit quads along long edges
+/// are deep as well: areas jump more from one side of a line to the other.)
 pub(crate) fn wish(kernel: &mut Kernel, size_m: f64) {
     let count = kernel.nodes.len();
     let mut length = vec![size_m; count];
@@ -43,7 +44,7 @@ pub(crate) fn wish(kernel: &mut Kernel, size_m: f64) {
         let at = kernel.nodes[node as usize];
         let ahead = distance(at, kernel.nodes[kernel.end(first) as usize]);
         let behind = distance(at, kernel.nodes[kernel.start(before(last)) as usize]);
-        length[node as usize] = 0.5 * (ahead + behind);
+        length[node as usize] = (0.5 * (ahead + behind)).min(size_m);
     }
     // A wish fades by about a factor of two a row, so six rows are enough.
     for _ in 0..6 {

@@ -8,6 +8,8 @@ mod looping;
 mod strip;
 #[path = "meshing_submap.rs"]
 mod submap;
+#[path = "meshing_turned_rows.rs"]
+mod turned_rows;
 
 use polder::meshing::Meshed;
 use polder::meshing::Options;

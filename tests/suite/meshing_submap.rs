@@ -78,7 +78,7 @@ fn bent_walks_have_the_cells_of_straight_ones() {
     assert!(tried > 20, "{tried}");
 }
 
-/// One interval too many on one side: rows would have to end.
+/// Eight intervals too many on one side: four rows would have to turn back.
 #[test]
 fn walks_that_do_not_close_are_left_to_others() {
     let mut draw = Draw::default();
@@ -90,7 +90,7 @@ fn walks_that_do_not_close_are_left_to_others() {
         [4.0, 8.0],
         [0.0, 8.0],
     ];
-    draw.ring(&l, &|p| if p[1] == 0.0 { 0.8 } else { 1.0 });
+    draw.ring(&l, &|p| if p[1] == 0.0 { 0.5 } else { 1.0 });
     let meshed = verify("not closed", &draw.loops(1.0), &[Method::Mapping]);
     assert_eq!(meshed.patch.method, Method::LastResort);
 }
