@@ -9,6 +9,7 @@ use crate::cleanup::measure::Measure;
 use crate::cleanup::measure::distance;
 use crate::cleanup::measure::quarters;
 use crate::cleanup::measure::to_segment;
+use crate::cleanup::measure::to_segment_m2;
 use crate::domain::line::LineId;
 use crate::geometry::point::Xy;
 use crate::noding::arrangement::Piece;
@@ -200,8 +201,9 @@ pub(super) fn displacements(graph: &Graph) -> Tally {
         for piece in &edge.pieces {
             let sides = sides_of_line(graph, edge, piece.line);
             let away_m = |p: Xy| {
-                let all = sides.iter().map(|&(a, b)| to_segment(p, a, b).0);
-                all.fold(f64::INFINITY, f64::min)
+                // one root for all of them
+                let all = sides.iter().map(|&(a, b)| to_segment_m2(p, a, b).0);
+                all.fold(f64::INFINITY, f64::min).sqrt()
             };
             let size_m = graph.measure.size_m[piece.line as usize];
             way.clear();

@@ -37,7 +37,16 @@ impl Graph<'_> {
             let [a, b, c] = sweep.triangle;
             let wide = orient(a, b, c);
             let (low, high) = (wide.min(0), wide.max(0));
+            let blocks = |end: u32| !room.allows(sweep.triangle, self.point(end));
+            let ends_of = |&edge: &u32| self.edges[edge as usize].ends;
+            if room.gone.iter().flat_map(ends_of).any(blocks) {
+                return false;
+            }
             !self.index.any_at([a, b, c], height(a, b, c), |held| {
+                // most that come so near are those that leave
+                if room.gone.contains(&held.edge) {
+                    return false;
+                }
                 let [p, q] = held.at();
                 // the triangle lies in the strip along its long side, most edges beside that
                 let (s, t) = (orient(a, b, p), orient(a, b, q));
@@ -46,8 +55,7 @@ impl Graph<'_> {
                 }
                 let is_allowed = room.allows(sweep.triangle, p)
                     && room.allows(sweep.triangle, q)
-                    && (room.gone.contains(&held.edge)
-                        || (sweep.fresh.iter()).all(|&(u, v)| !touches(u, v, p, q)));
+                    && (sweep.fresh.iter()).all(|&(u, v)| !touches(u, v, p, q));
                 !is_allowed
             })
         })

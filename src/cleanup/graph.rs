@@ -453,19 +453,17 @@ impl<'a> Graph<'a> {
     /// The arrangement as it is now. Ring pieces stay on the rim only, as after clipping; a closed
     /// wall that carries nothing else goes.
     pub(super) fn arrangement(&self) -> Arrangement {
-        let mut parts = Vec::with_capacity(self.edges.len());
+        let mut stretches = Vec::with_capacity(self.edges.len());
         for edge in self.edges.iter().filter(|edge| edge.alive) {
             let rim = i32::from(edge.inside[0]) - i32::from(edge.inside[1]);
             let stays = |piece: &&Piece| {
                 let vote = vote(self.measure.domain, piece);
                 vote == 0 || (rim != 0 && vote == rim)
             };
-            let pieces: Vec<Piece> = edge.pieces.iter().filter(stays).copied().collect();
-            if !pieces.is_empty() {
-                parts.push((edge.ends, pieces));
-            }
+            let pieces = edge.pieces.iter().filter(stays);
+            stretches.extend(pieces.map(|&piece| (edge.ends, Some(piece))));
         }
-        Arrangement::from_parts(&self.at, parts)
+        Arrangement::from_stretches(&self.at, stretches)
     }
 }
 

@@ -16,7 +16,7 @@ use crate::noding::arrangement::Piece;
 use std::iter::once;
 
 /// The input lines with their stations, sizes, ranks and tolerances, in metres.
-pub(super) struct Measure<'a> {
+pub struct Measure<'a> {
     pub(super) domain: &'a Domain,
     /// The vertices of all lines; line `i` starts at `start[i]`.
     vertices: Vec<Vertex>,
@@ -63,7 +63,8 @@ const AT_CORNER: f64 = 0.1;
 pub(super) const PRIORITY_RANK: f64 = 1e9;
 
 impl<'a> Measure<'a> {
-    pub(super) fn new(domain: &'a Domain, sizes: &SizeWish, options: &Options) -> Measure<'a> {
+    /// Measures the lines of a domain.
+    pub fn new(domain: &'a Domain, sizes: &SizeWish, options: &Options) -> Measure<'a> {
         let mut made = Measure {
             domain,
             vertices: Vec::new(),
@@ -231,13 +232,18 @@ impl<'a> Measure<'a> {
         is_near(k, high)
     }
 
-    /// How much of a stretch is farther than [`NEAR`] of its tolerance from the edge `a b`, metres; by the middles of
-    /// the quarters of its segments, as `audit` measures, but against this one edge: it is no less.
+    /// How much of a stretch is farther than [`NEAR`] of its tolerance from the edge `a b`, metres.
     pub(super) fn beyond_m(&self, piece: &Piece, a: Xy, b: Xy) -> f64 {
         // most are near from end to end
-        if self.fits(piece, a, b, NEAR) {
-            return 0.0;
+        match self.fits(piece, a, b, NEAR) {
+            true => 0.0,
+            false => self.parts_beyond_m(piece, a, b),
         }
+    }
+
+    /// The same of a stretch that is not near from end to end: by the middles of the quarters of its segments, as
+    /// `audit` measures, but against this one edge. It is no less.
+    pub(super) fn parts_beyond_m(&self, piece: &Piece, a: Xy, b: Xy) -> f64 {
         let limit_m = NEAR * self.tolerance_m[piece.line as usize];
         let mut beyond_m = 0.0;
         let mut way = self.way(piece);
@@ -347,13 +353,26 @@ pub(super) fn between_deg(o: Xy, a: Xy, b: Xy) -> f64 {
 /// Distance between two positions, metres.
 #[inline]
 pub(super) fn distance(a: Xy, b: Xy) -> f64 {
+    distance_m2(a, b).sqrt()
+}
+
+/// Its square, square metres.
+#[inline]
+fn distance_m2(a: Xy, b: Xy) -> f64 {
     let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
-    (dx * dx + dy * dy).sqrt()
+    dx * dx + dy * dy
 }
 
 /// Distance of `p` from the segment `a b`, and where the nearest point lies on it, in 0..1.
 #[inline]
 pub(super) fn to_segment(p: Xy, a: Xy, b: Xy) -> (f64, f64) {
+    let (away_m2, t) = to_segment_m2(p, a, b);
+    (away_m2.sqrt(), t)
+}
+
+/// The same with the square of the distance.
+#[inline]
+pub(super) fn to_segment_m2(p: Xy, a: Xy, b: Xy) -> (f64, f64) {
     let (ux, uy) = (b[0] - a[0], b[1] - a[1]);
     let length2 = ux * ux + uy * uy;
     let t = if length2 > 0.0 {
@@ -361,5 +380,5 @@ pub(super) fn to_segment(p: Xy, a: Xy, b: Xy) -> (f64, f64) {
     } else {
         0.0
     };
-    (distance(p, [a[0] + t * ux, a[1] + t * uy]), t)
+    (distance_m2(p, [a[0] + t * ux, a[1] + t * uy]), t)
 }

@@ -15,28 +15,45 @@ pub(super) struct Nearby {
 
 /// A list for each node, or for each edge, that was asked for.
 struct Answers {
-    /// Where it is in the pool; nowhere if it was not asked for.
-    at: Vec<Option<(u32, u32)>>,
+    /// Where it begins in the pool, with its length; zero if it was not asked for.
+    at: Vec<u32>,
     pool: Vec<u32>,
+    /// What was asked for: forgetting it takes no longer than asking did.
+    asked: Vec<u32>,
 }
 
 impl Answers {
     fn new(len: usize) -> Answers {
         Answers {
-            at: vec![None; len],
-            pool: Vec::new(),
+            at: vec![0; len],
+            // no list begins at zero
+            pool: vec![0],
+            asked: Vec::new(),
         }
     }
 
-    fn put(&mut self, id: u32, list: &[u32]) {
-        let from = self.pool.len() as u32;
-        self.pool.extend_from_slice(list);
-        self.at[id as usize] = Some((from, self.pool.len() as u32));
+    fn forget(&mut self) {
+        for id in self.asked.drain(..) {
+            self.at[id as usize] = 0;
+        }
+        self.pool.truncate(1);
     }
 
-    fn get(&self, id: u32) -> Option<&[u32]> {
-        let (from, to) = self.at[id as usize]?;
-        Some(&self.pool[from as usize..to as usize])
+    fn is_known(&self, id: u32) -> bool {
+        self.at[id as usize] > 0
+    }
+
+    fn put(&mut self, id: u32, list: &[u32]) {
+        self.at[id as usize] = self.pool.len() as u32;
+        self.pool.push(list.len() as u32);
+        self.pool.extend_from_slice(list);
+        self.asked.push(id);
+    }
+
+    /// Of one that is known.
+    fn get(&self, id: u32) -> &[u32] {
+        let from = self.at[id as usize] as usize;
+        &self.pool[from + 1..from + 1 + self.pool[from] as usize]
     }
 }
 
@@ -52,19 +69,25 @@ impl Nearby {
         }
     }
 
+    /// Knows nothing again: nodes have moved.
+    pub(super) fn forget(&mut self) {
+        self.edges.forget();
+        self.nodes.forget();
+    }
+
     /// Edges near a node, not its own.
     pub(super) fn edges(&mut self, graph: &Graph, node: u32) -> &[u32] {
-        if self.edges.at[node as usize].is_none() {
+        if !self.edges.is_known(node) {
             let reach = self.reach * graph.size_at_m(node) / graph.measure.grid().cell_m;
             (graph.index).edges_near(node, graph.point(node), reach, &mut self.found);
             self.edges.put(node, &self.found);
         }
-        self.edges.get(node).expect("it was put there")
+        self.edges.get(node)
     }
 
     /// Nodes near an edge, not its ends, in the order of their ids.
     pub(super) fn nodes(&mut self, graph: &Graph, edge: u32) -> &[u32] {
-        if self.nodes.at[edge as usize].is_none() {
+        if !self.nodes.is_known(edge) {
             let it = &graph.edges[edge as usize];
             let [p, q] = it.ends.map(|end| graph.point(end));
             let reach = self.reach * it.size_m / graph.measure.grid().cell_m;
@@ -73,6 +96,6 @@ impl Nearby {
                 .retain(|&node| !it.ends.contains(&node) && graph.degree(node) > 0);
             self.nodes.put(edge, &self.found);
         }
-        self.nodes.get(edge).expect("it was put there")
+        self.nodes.get(edge)
     }
 }

@@ -11,6 +11,7 @@ use crate::cleanup::clear::Sweep;
 use crate::cleanup::edge::Draft;
 use crate::cleanup::edge::Fused;
 use crate::cleanup::graph::Graph;
+use crate::cleanup::measure::NEAR;
 use crate::cleanup::measure::ROUNDING_M;
 use crate::cleanup::stations::Absorbed;
 use crate::geometry::point::Point;
@@ -37,20 +38,19 @@ impl Graph<'_> {
         self.shift_if(v, p, |piece, a, b| measure.fits(piece, a, b, share))
     }
 
-    /// The same, if no more than `most_m` of its stretches comes farther away than half of their tolerance.
+    /// The same with a share above [`NEAR`] of it, if no more than `most_m` of its stretches comes farther away than
+    /// that.
     pub(super) fn shift_near(&mut self, v: u32, p: Point, share: f64, most_m: f64) -> bool {
-        if most_m == f64::INFINITY {
-            return self.shift(v, p, share);
-        }
         let measure = self.measure;
         let mut left_m = most_m + ROUNDING_M;
         self.shift_if(v, p, |piece, a, b| {
+            if measure.fits(piece, a, b, NEAR) {
+                return true;
+            }
             let fits = measure.fits(piece, a, b, share);
-            left_m -= if fits {
-                measure.beyond_m(piece, a, b)
-            } else {
-                0.0
-            };
+            if fits {
+                left_m -= measure.parts_beyond_m(piece, a, b);
+            }
             fits && left_m >= 0.0
         })
     }

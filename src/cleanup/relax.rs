@@ -58,7 +58,7 @@ pub(super) fn relax(graph: &mut Graph, wanted: &Wanted, nodes: &[u32]) {
     let mut nearby = Nearby::new(graph, wanted.gap + DRIFT);
     for round in 0..wanted.rounds {
         if round > 0 && round % ROUNDS_A_LOOK == 0 {
-            nearby = Nearby::new(graph, wanted.gap + DRIFT);
+            nearby.forget();
         }
         let mut again = Vec::new();
         for &node in &active {
@@ -158,14 +158,19 @@ fn pushed(graph: &mut Graph, shares: &[f64], node: u32, push: Xy) -> Option<usiz
     let at = graph.metres(node);
     let push_m = distance(push, [0.0; 2]);
     shares.iter().position(|&share| {
-        let most_m = match share <= NEAR {
+        // half of the tolerance is used freely
+        let is_free = share <= NEAR;
+        let most_m = match is_free {
             true => f64::INFINITY,
             false => graph.beyond_m(node).max(FAR_FOR_PUSH * push_m),
         };
         [STEP, STEP / 2.0, STEP / 4.0].iter().any(|step| {
             let place = [at[0] + step * push[0], at[1] + step * push[1]];
             let p = graph.measure.on_grid(place);
-            graph.shift_near(node, p, share, most_m)
+            match is_free {
+                true => graph.shift(node, p, share),
+                false => graph.shift_near(node, p, share, most_m),
+            }
         })
     })
 }
@@ -197,10 +202,9 @@ fn push_m(
     around.clear();
     for &edge in nearby.edges(graph, node) {
         let wants = wanted.gap * graph.edges[edge as usize].size_m.min(size);
-        if let Some(gap) = gap_below_m(graph, node, edge, wants) {
+        if let Some((gap, t)) = gap_below_m(graph, node, edge, wants) {
             around.extend(graph.edges[edge as usize].ends);
             let (a, b) = graph.ends_m(edge);
-            let t = to_segment(at, a, b).1;
             add(unit(between(a, b, t), at), 0.5 * (wants - gap));
         }
     }
@@ -214,7 +218,7 @@ fn push_m(
             }
             around.push(other);
             let wants = reach.min(wanted.gap * graph.size_at_m(other));
-            if let Some(gap) = gap_below_m(graph, other, edge, wants) {
+            if let Some((gap, _)) = gap_below_m(graph, other, edge, wants) {
                 let t = to_segment(it, at, far).1;
                 add(
                     unit(it, between(at, far, t)),

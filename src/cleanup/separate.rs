@@ -190,7 +190,7 @@ fn gap_ratio(graph: &Graph, narrow: &Narrow, node: u32, edge: u32) -> Option<f64
     let size_m = graph.size_at_m(node);
     let limit = narrow.of(graph, node) * size_m.min(graph.edges[edge as usize].size_m);
     gap_below_m(graph, node, edge, limit)
-        .map(|gap| gap / limit)
+        .map(|(gap, _)| gap / limit)
         .filter(|&ratio| ratio < 1.0)
 }
 
@@ -241,12 +241,13 @@ fn each_conflict(graph: &Graph, narrow: &Narrow, node: u32, mut tell: impl FnMut
 /// Distance from a node to an edge that is not its own, if the domain lies between them; `None`
 /// also if the nearest place of the edge is a neighbour of the node.
 pub(super) fn gap_m(graph: &Graph, node: u32, edge: u32) -> Option<f64> {
-    gap_below_m(graph, node, edge, f64::INFINITY)
+    gap_below_m(graph, node, edge, f64::INFINITY).map(|it| it.0)
 }
 
-/// [`gap_m`] if it is below the limit; what is far is told so by its bounding box.
+/// [`gap_m`] if it is below the limit, and where the nearest place lies on the edge, in 0..1; what is far is told so by
+/// its bounding box.
 #[inline]
-pub(super) fn gap_below_m(graph: &Graph, node: u32, edge: u32, limit_m: f64) -> Option<f64> {
+pub(super) fn gap_below_m(graph: &Graph, node: u32, edge: u32, limit_m: f64) -> Option<(f64, f64)> {
     let it = &graph.edges[edge as usize];
     let at = graph.metres(node);
     let (a, b) = graph.ends_m(edge);
@@ -267,9 +268,9 @@ pub(super) fn gap_below_m(graph: &Graph, node: u32, edge: u32, limit_m: f64) -> 
     } else if t >= 1.0 {
         it.ends[1]
     } else {
-        return Some(gap);
+        return Some((gap, t));
     };
-    graph.find(node, end).is_none().then_some(gap)
+    graph.find(node, end).is_none().then_some((gap, t))
 }
 
 /// True if `p` is in the bounding box of the segment `a b`, wider by `reach` on all sides.

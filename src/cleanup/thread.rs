@@ -237,33 +237,28 @@ fn place(domain: &Domain, line: LineId, station_m: f64) -> Xy {
 /// Edges around each node.
 struct Stars {
     start: Vec<u32>,
-    /// (other end, edge), by node.
+    /// (other end, edge), by node, then sorted.
     out: Vec<(u32, u32)>,
 }
 
 impl Stars {
     fn of(arrangement: &Arrangement) -> Stars {
         let nodes = arrangement.points.len();
-        let mut halves: Vec<[u32; 3]> = Vec::with_capacity(2 * arrangement.edges.len());
-        for (&[a, b], edge) in arrangement.edges.iter().zip(0..) {
-            halves.extend([[a, b, edge], [b, a, edge]]);
-        }
-        let order = grouped(&halves, nodes, |half| half[0] as usize);
-        let mut start = vec![0; nodes + 1];
-        for half in &halves {
-            start[half[0] as usize + 1] += 1;
+        let mut start = vec![0_u32; nodes + 1];
+        for &node in arrangement.edges.iter().flatten() {
+            start[node as usize + 1] += 1;
         }
         for node in 0..nodes {
             start[node + 1] += start[node];
         }
-        let mut out = Vec::with_capacity(halves.len());
-        for star in order.chunk_by(|&s, &t| halves[s as usize][0] == halves[t as usize][0]) {
-            let from = out.len();
-            out.extend(star.iter().map(|&it| {
-                let [_, other, edge] = halves[it as usize];
-                (other, edge)
-            }));
-            out[from..].sort_unstable();
+        // edges are sorted: first those from lesser nodes come to a star, then those to greater ones
+        let mut next = start.clone();
+        let mut out = vec![(0, 0); 2 * arrangement.edges.len()];
+        for (&[a, b], edge) in arrangement.edges.iter().zip(0..) {
+            for (node, other) in [(a, b), (b, a)] {
+                out[next[node as usize] as usize] = (other, edge);
+                next[node as usize] += 1;
+            }
         }
         Stars { start, out }
     }
