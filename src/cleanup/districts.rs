@@ -61,8 +61,8 @@ use crate::domain::size::SizeWish;
 use crate::geometry::point::Point;
 use crate::geometry::window::Window;
 use crate::noding::arrangement::Arrangement;
+use crate::noding::arrangement::SortedPoints;
 use crate::noding::arrangement::grouped;
-use crate::noding::arrangement::sorted_points;
 
 /// All that districts share.
 pub struct Site<'a> {
@@ -113,26 +113,30 @@ pub struct Met {
 }
 
 /// Cuts a noded and clipped arrangement into districts.
-pub fn site<'a>(
-    domain: &'a Domain,
+pub fn layout(
+    domain: &Domain,
     sizes: &SizeWish,
+    arrangement: &Arrangement,
+    grain: &Grain,
+) -> Layout {
+    Layout::of(arrangement, grain, sizes.default_m / domain.grid.cell_m)
+}
+
+/// What the [`layout`] of the arrangement is for, and what its lines are measured by.
+pub fn site<'a>(
+    measure: Measure<'a>,
+    layout: Layout,
     arrangement: Arrangement,
     options: &Options,
-    grain: &Grain,
 ) -> Site<'a> {
-    let measure = Measure::new(domain, sizes, options);
     let is_clean = (options.left.as_ref())
         .is_some_and(|left| leftovers::are_only(&Graph::new(&arrangement, &measure), left));
     let is_on = measure.allows_any() && !is_clean;
-    let layout = match is_on {
-        true => Layout::of(&arrangement, grain, sizes.default_m / domain.grid.cell_m),
-        false => Layout::whole(),
-    };
     Site {
         measure,
         arrangement,
         is_on,
-        layout,
+        layout: if is_on { layout } else { Layout::whole() },
     }
 }
 
@@ -276,7 +280,7 @@ fn graph_of<'a>(
     is_open: impl Fn(Point) -> bool,
 ) -> Graph<'a> {
     let ends: Vec<Point> = edges.iter().flat_map(|edge| edge.ends).collect();
-    let (at, id) = sorted_points(&ends);
+    let SortedPoints { points: at, id } = SortedPoints::of(&ends);
     let ends: Vec<[u32; 2]> = id.chunks_exact(2).map(|it| [it[0], it[1]]).collect();
     // in the order of their ids, which is that of the points
     let mut order = grouped(&ends, at.len(), |it| it[0] as usize);

@@ -40,8 +40,24 @@ pub struct Band {
     pub(super) window: Window,
 }
 
+impl District {
+    /// Grows with the time that it takes.
+    pub fn work(&self) -> i64 {
+        self.edges.len() as i64
+    }
+}
+
+impl Band {
+    /// Grows with the time that it takes: bands are of one width.
+    pub fn work(&self) -> i64 {
+        let Window { min, max } = self.window;
+        let side = |low: i32, high: i32| i64::from(high) - i64::from(low);
+        side(min.x, max.x) + side(min.y, max.y)
+    }
+}
+
 /// How the work is shared.
-pub(super) struct Layout {
+pub struct Layout {
     /// Disjoint, over all nodes; none if there is too little work to share.
     pub(super) districts: Vec<District>,
     /// Disjoint, over all borders.

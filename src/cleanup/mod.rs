@@ -139,6 +139,7 @@ pub use crate::cleanup::districts::Site;
 pub use crate::cleanup::districts::clean_band;
 pub use crate::cleanup::districts::clean_district;
 pub use crate::cleanup::districts::join;
+pub use crate::cleanup::districts::layout;
 pub use crate::cleanup::districts::meet;
 pub use crate::cleanup::districts::site;
 pub use crate::cleanup::finish::Given;
@@ -148,6 +149,8 @@ pub use crate::cleanup::layout::Band;
 pub use crate::cleanup::layout::District;
 pub use crate::cleanup::layout::GRAIN;
 pub use crate::cleanup::layout::Grain;
+pub use crate::cleanup::layout::Layout;
+pub use crate::cleanup::measure::Measure;
 
 /// How far a line may be from the mesh edges that represent it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -216,7 +219,9 @@ pub fn clean(
     arrangement: Arrangement,
     options: &Options,
 ) -> Cleaned {
-    let site = site(domain, sizes, arrangement, options, &GRAIN);
+    let measure = Measure::new(domain, sizes, options);
+    let layout = layout(domain, sizes, &arrangement, &GRAIN);
+    let site = site(measure, layout, arrangement, options);
     let districts = site.districts().iter();
     let made = districts.map(|it| clean_district(&site, it)).collect();
     let met = meet(&site, made);

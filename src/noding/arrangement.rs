@@ -28,6 +28,10 @@ impl Piece {
     }
 }
 
+/// What makes an edge: the nodes that it runs between, and what it represents, in that direction;
+/// nothing if it is a seam.
+pub type Stretch = ([u32; 2], Option<Piece>);
+
 /// A planar straight-line graph whose edges remember where they come from.
 ///
 /// Invariants (`noding::check`): points sorted and unique; each edge `[a, b]` has `a < b`; edges
@@ -88,11 +92,13 @@ impl Arrangement {
 
     /// The same from one entry for each edge and piece, in any order; `None` makes the edge without
     /// giving it a piece.
-    pub fn from_stretches(
-        points: &[Point],
-        mut stretches: Vec<([u32; 2], Option<Piece>)>,
-    ) -> Arrangement {
-        let (points, id) = sorted_points(points);
+    pub fn from_stretches(points: &[Point], stretches: Vec<Stretch>) -> Arrangement {
+        Arrangement::from_sorted(SortedPoints::of(points), stretches)
+    }
+
+    /// The same, if the points are in order already; stretches still have the ids of before.
+    pub fn from_sorted(nodes: SortedPoints, mut stretches: Vec<Stretch>) -> Arrangement {
+        let SortedPoints { points, id } = nodes;
         for (edge, piece) in &mut stretches {
             *edge = edge.map(|node| id[node as usize]);
             if edge[0] > edge[1] {
@@ -177,17 +183,28 @@ pub(crate) fn grouped<T>(all: &[T], keys: usize, key: impl Fn(&T) -> usize) -> V
     order
 }
 
-/// The different points in order, and for each given point its place there.
-pub(crate) fn sorted_points(given: &[Point]) -> (Vec<Point>, Vec<u32>) {
-    let mut order: Vec<(Point, u32)> = given.iter().copied().zip(0..).collect();
-    order.sort_unstable();
-    let mut points = Vec::with_capacity(given.len());
-    let mut id = vec![0; given.len()];
-    for (point, old) in order {
-        if points.last() != Some(&point) {
-            points.push(point);
+/// The different ones of some points, in order.
+pub struct SortedPoints {
+    /// Each once.
+    pub points: Vec<Point>,
+    /// For each given point its place there.
+    pub id: Vec<u32>,
+}
+
+impl SortedPoints {
+    /// O(n log n), and less where long parts of them are in order.
+    pub fn of(given: &[Point]) -> SortedPoints {
+        let mut order: Vec<(Point, u32)> = given.iter().copied().zip(0..).collect();
+        // the stable sort finds such parts
+        order.sort();
+        let mut points = Vec::with_capacity(given.len());
+        let mut id = vec![0; given.len()];
+        for (point, old) in order {
+            if points.last() != Some(&point) {
+                points.push(point);
+            }
+            id[old as usize] = points.len() as u32 - 1;
         }
-        id[old as usize] = points.len() as u32 - 1;
+        SortedPoints { points, id }
     }
-    (points, id)
 }

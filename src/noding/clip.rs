@@ -5,7 +5,7 @@ use crate::domain::line::Role;
 use crate::noding::arrangement::Arrangement;
 use crate::noding::arrangement::Piece;
 use crate::noding::rim::vote;
-use crate::noding::winding::sides_inside;
+use crate::noding::winding::Rings;
 
 /// The part of `arrangement` in the domain, and the stretches of constraint lines that lie outside
 /// (`from_m < to_m`, by line, joined where they touch).
@@ -15,35 +15,49 @@ use crate::noding::winding::sides_inside;
 /// ring that snapping closed) loses its ring pieces, and goes if nothing else runs there. On the
 /// rim those ring pieces stay that have the domain on the side where it is.
 pub fn clip(domain: &Domain, arrangement: Arrangement) -> (Arrangement, Vec<Piece>) {
-    let inside = sides_inside(domain, &arrangement);
-    let mut kept = Arrangement {
-        points: Vec::new(),
-        edges: Vec::with_capacity(arrangement.edges.len()),
-        piece_start: Vec::with_capacity(arrangement.piece_start.len()),
-        pieces: Vec::with_capacity(arrangement.pieces.len()),
-    };
-    kept.piece_start.push(0);
+    let all = 0..arrangement.edges.len() as u32;
+    let inside = Rings::of(domain, &arrangement).sides_inside(&arrangement, all);
+    clip_to(domain, arrangement, &inside)
+}
+
+/// The same, if the sides of all edges are known.
+pub fn clip_to(
+    domain: &Domain,
+    arrangement: Arrangement,
+    inside: &[[bool; 2]],
+) -> (Arrangement, Vec<Piece>) {
+    let mut made = arrangement;
     let mut outside = Vec::new();
-    for (edge, sides) in inside.into_iter().enumerate() {
-        let pieces = arrangement.pieces_of(edge as u32);
+    // nearly everything stays: it moves up in the arrays where it is
+    let (mut edges, mut pieces, mut from) = (0, 0, 0);
+    for (edge, &sides) in inside.iter().enumerate() {
+        let of_edge = from..made.piece_start[edge + 1] as usize;
+        from = of_edge.end;
         if sides == [false, false] {
-            outside.extend(pieces.iter().filter(|piece| is_constraint(domain, piece)));
+            let gone = made.pieces[of_edge].iter();
+            outside.extend(gone.filter(|piece| is_constraint(domain, piece)));
             continue;
         }
         let rim = i32::from(sides[0]) - i32::from(sides[1]);
-        let stays = |piece: &&Piece| {
-            is_constraint(domain, piece) || (rim != 0 && vote(domain, piece) == rim)
-        };
-        let before = kept.pieces.len();
-        kept.pieces.extend(pieces.iter().filter(stays));
-        if kept.pieces.len() > before {
-            kept.edges.push(arrangement.edges[edge]);
-            kept.piece_start.push(kept.pieces.len() as u32);
+        let before = pieces;
+        for at in of_edge {
+            let piece = made.pieces[at];
+            if is_constraint(domain, &piece) || (rim != 0 && vote(domain, &piece) == rim) {
+                made.pieces[pieces] = piece;
+                pieces += 1;
+            }
+        }
+        if pieces > before {
+            made.edges[edges] = made.edges[edge];
+            edges += 1;
+            made.piece_start[edges] = pieces as u32;
         }
     }
-    kept.points = arrangement.points;
-    kept.drop_unused_points();
-    (kept, joined(outside))
+    made.edges.truncate(edges);
+    made.piece_start.truncate(edges + 1);
+    made.pieces.truncate(pieces);
+    made.drop_unused_points();
+    (made, joined(outside))
 }
 
 fn is_constraint(domain: &Domain, piece: &Piece) -> bool {

@@ -1,6 +1,7 @@
 //! The hot pixels that a tile owns, and the segments that pass through each.
 
 use crate::domain::line::Domain;
+use crate::geometry::crossing::along;
 use crate::geometry::crossing::crossing;
 use crate::geometry::crossing::passes_pixel;
 use crate::geometry::point::Point;
@@ -18,9 +19,20 @@ use rstar::primitives::GeomWithData;
 pub struct TileNodes {
     /// Centres of the hot pixels that the tile owns, sorted.
     pub points: Vec<Point>,
-    /// All (segment, index into `points`) such that the segment passes through the hot pixel; by
-    /// point.
-    pub incidences: Vec<(Segment, u32)>,
+    /// Where a segment passes through a hot pixel, whose index into `points` is the node; by point.
+    pub stops: Vec<Stop>,
+}
+
+/// A node on a segment; sorted, the nodes of a segment follow each other along it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Stop {
+    /// The segment.
+    pub segment: Segment,
+    /// As in [`along`], cells². Different pixels that one segment passes never tie: on the way
+    /// both coordinates change in one direction only.
+    pub along: i64,
+    /// The hot pixel.
+    pub node: u32,
 }
 
 /// A segment in the R-tree: its box is cut to the tile, so that long segments do not answer
@@ -56,9 +68,17 @@ pub fn node_tile(domain: &Domain, tile: &Tile) -> TileNodes {
     points.dedup();
     let mut passed = passages(&tree, &points);
     passed.sort_unstable();
-    let of = |(node, index): (u32, u32)| (tile.segments[index as usize], node);
-    let incidences = passed.into_iter().map(of).collect();
-    TileNodes { points, incidences }
+    let stop = |(node, index): (u32, u32)| {
+        let segment = tile.segments[index as usize];
+        let (a, b) = segment.ends(domain);
+        Stop {
+            segment,
+            along: along(a, b, points[node as usize]),
+            node,
+        }
+    };
+    let stops = passed.into_iter().map(stop).collect();
+    TileNodes { points, stops }
 }
 
 /// Which segment passes which of the hot pixels: (pixel, segment), in no order.

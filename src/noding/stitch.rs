@@ -1,53 +1,65 @@
 //! Hot pixels of all tiles -> edges and pieces.
 
 use crate::domain::line::Domain;
-use crate::geometry::crossing::along;
 use crate::geometry::point::Point;
 use crate::noding::arrangement::Arrangement;
 use crate::noding::arrangement::Piece;
+use crate::noding::arrangement::SortedPoints;
+use crate::noding::arrangement::Stretch;
 use crate::noding::arrangement::grouped;
+use crate::noding::hot::Stop;
 use crate::noding::hot::TileNodes;
-use crate::noding::tile::Segment;
 
-/// A node on a segment; sorted, the nodes of a segment follow each other along it.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Stop {
-    segment: Segment,
-    /// As in [`along`], cells². Different pixels that one segment passes never tie: on the way
-    /// both coordinates change in one direction only.
-    along: i64,
-    node: u32,
+/// What was found in all tiles, beside each other.
+pub struct Gathered {
+    points: Vec<Point>,
+    /// Nodes are indices into `points`.
+    stops: Vec<Stop>,
 }
 
 /// The arrangement of the nodes of all tiles, in whatever order they come.
 pub fn stitch(domain: &Domain, tiles: Vec<TileNodes>) -> Arrangement {
-    let mut points: Vec<Point> = Vec::with_capacity(tiles.iter().map(|t| t.points.len()).sum());
-    let mut stops = Vec::with_capacity(tiles.iter().map(|t| t.incidences.len()).sum());
-    for tile in tiles {
-        let first = points.len() as u32;
-        for (segment, node) in tile.incidences {
-            let (a, b) = segment.ends(domain);
-            stops.push(Stop {
-                segment,
-                along: along(a, b, tile.points[node as usize]),
-                node: first + node,
-            });
-        }
-        points.extend(tile.points);
-    }
-    let mut first = vec![0];
-    for line in &domain.lines {
-        first.push(first[first.len() - 1] + line.points.len());
-    }
-    let segment = |it: &Stop| first[it.segment.line as usize] + it.segment.at as usize;
-    let order = grouped(&stops, first[first.len() - 1], segment);
-    let stretches = stretches(domain, &stops, &order);
-    drop((stops, order));
-    Arrangement::from_stretches(&points, stretches)
+    let gathered = gather(tiles);
+    let (nodes, stretches) = (gathered.nodes(), gathered.stretches(domain));
+    drop(gathered);
+    Arrangement::from_sorted(nodes, stretches)
 }
 
-/// One stretch from each stop of a segment to the next. `order`: of the stops, by segment.
-fn stretches(domain: &Domain, stops: &[Stop], order: &[u32]) -> Vec<([u32; 2], Option<Piece>)> {
+/// Puts the nodes of all tiles beside each other.
+pub fn gather(tiles: Vec<TileNodes>) -> Gathered {
+    let mut points: Vec<Point> = Vec::with_capacity(tiles.iter().map(|t| t.points.len()).sum());
+    let mut stops = Vec::with_capacity(tiles.iter().map(|t| t.stops.len()).sum());
+    for tile in tiles {
+        let first = points.len() as u32;
+        stops.extend(tile.stops.into_iter().map(|stop| Stop {
+            node: first + stop.node,
+            ..stop
+        }));
+        points.extend(tile.points);
+    }
+    Gathered { points, stops }
+}
+
+impl Gathered {
+    /// The nodes in order.
+    pub fn nodes(&self) -> SortedPoints {
+        SortedPoints::of(&self.points)
+    }
+
+    /// One stretch from each stop of a segment to the next; it needs no order of the nodes.
+    pub fn stretches(&self, domain: &Domain) -> Vec<Stretch> {
+        let mut first = vec![0];
+        for line in &domain.lines {
+            first.push(first[first.len() - 1] + line.points.len());
+        }
+        let segment = |it: &Stop| first[it.segment.line as usize] + it.segment.at as usize;
+        let order = grouped(&self.stops, first[first.len() - 1], segment);
+        stretches(domain, &self.stops, &order)
+    }
+}
+
+/// `order`: of the stops, by segment.
+fn stretches(domain: &Domain, stops: &[Stop], order: &[u32]) -> Vec<Stretch> {
     let mut made = Vec::with_capacity(stops.len());
     let (mut here, mut at_m) = (Vec::new(), Vec::new());
     let segment = |it: u32| stops[it as usize].segment;

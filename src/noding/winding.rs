@@ -6,58 +6,81 @@ use crate::noding::arrangement::Arrangement;
 use crate::noding::arrangement::Piece;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Winding numbers of a place: of the boundary rings, of the hole rings.
 type Winding = [i32; 2];
 
-/// Whether the left and the right side of each edge lie inside the domain: within a boundary
-/// polygon and in no hole polygon.
+/// The edges of rings, in the orders in which a line that sweeps north meets them.
 ///
-/// A line sweeps north. Its status holds the edges of rings that it meets, west to east, each with
-/// the winding numbers of its east side; the middle of an edge finds those of the face beside it
-/// at its neighbour in the west. Exact: edges do not cross, so their order never changes while
-/// they are in the status, and all comparisons are in doubled grid coordinates.
-/// O((edges + ring edges) log(ring edges)).
-pub fn sides_inside(domain: &Domain, arrangement: &Arrangement) -> Vec<[bool; 2]> {
-    let span = |edge: u32| {
-        let ends = arrangement.edges[edge as usize];
-        Span::between(ends.map(|node| doubled(arrangement, node)))
-    };
-    let net = |edge: u32| net_winding(domain, arrangement.pieces_of(edge));
-    let edges = 0..arrangement.edges.len() as u32;
-    let mut sweep = Sweep::over(edges.clone().map(|edge| (span(edge), net(edge))));
-    let mut by_middle: Vec<(i64, u32)> = edges.map(|it| (span(it).middle().y, it)).collect();
-    by_middle.sort_unstable();
-    let mut inside = vec![[false; 2]; arrangement.edges.len()];
-    for (y, edge) in by_middle {
-        let span = span(edge);
-        sweep.advance(y);
-        let beside = sweep.west_of(&Span::at(span.middle()));
-        inside[edge as usize] = sides(beside, span, net(edge));
-    }
-    inside
-}
-
-/// The sweep line: edges of rings that are not level, by where they start and end.
-struct Sweep {
+/// Its status holds those that it is at, west to east, each with the winding numbers of its east
+/// side; the middle of an edge finds those of the face beside it at its neighbour in the west.
+/// Exact: edges do not cross, so their order never changes while they are in the status, and all
+/// comparisons are in doubled grid coordinates.
+pub struct Rings {
+    /// Of each edge of the arrangement.
+    net: Vec<Winding>,
+    /// Edges that are not level, by where they start and end.
     starts: Vec<(Span, Winding)>,
     ends: Vec<Span>,
+}
+
+impl Rings {
+    /// O(edges + ring edges log(ring edges)).
+    pub fn of(domain: &Domain, arrangement: &Arrangement) -> Rings {
+        let edges = 0..arrangement.edges.len() as u32;
+        let net = edges.map(|edge| net_winding(domain, arrangement.pieces_of(edge)));
+        let net: Vec<Winding> = net.collect();
+        let of_rings = (0..).zip(&net).filter(|(_, net)| **net != [0, 0]);
+        let mut starts: Vec<(Span, Winding)> = of_rings
+            .map(|(edge, &net)| (span(arrangement, edge), net))
+            .filter(|(span, _)| !span.is_level())
+            .collect();
+        starts.sort_unstable_by(|(s, _), (t, _)| s.start_order(t));
+        let mut ends: Vec<Span> = starts.iter().map(|(span, _)| *span).collect();
+        ends.sort_unstable_by_key(|span| span.high.y);
+        Rings { net, starts, ends }
+    }
+
+    /// Whether the left and the right side of each of `edges` lie inside the domain: within a
+    /// boundary polygon and in no hole polygon. The edges of an arrangement can be asked for in
+    /// parts: each sweep is one of its own. O((edges + ring edges) log(ring edges)).
+    pub fn sides_inside(&self, arrangement: &Arrangement, edges: Range<u32>) -> Vec<[bool; 2]> {
+        let mut sweep = Sweep::over(self);
+        let first = edges.start;
+        let mut inside = vec![[false; 2]; edges.len()];
+        let middle = |edge: u32| (span(arrangement, edge).middle().y, edge);
+        let mut by_middle: Vec<(i64, u32)> = edges.map(middle).collect();
+        by_middle.sort_unstable();
+        for (y, edge) in by_middle {
+            let span = span(arrangement, edge);
+            sweep.advance(y);
+            let beside = sweep.west_of(&Span::at(span.middle()));
+            inside[(edge - first) as usize] = sides(beside, span, self.net[edge as usize]);
+        }
+        inside
+    }
+}
+
+/// An edge of the arrangement as the sweep sees it.
+fn span(arrangement: &Arrangement, edge: u32) -> Span {
+    let ends = arrangement.edges[edge as usize];
+    Span::between(ends.map(|node| doubled(arrangement, node)))
+}
+
+/// The sweep line.
+struct Sweep<'a> {
+    rings: &'a Rings,
     started: usize,
     ended: usize,
     /// Edges that the line meets (just north of itself), each with the winding of its east side.
     status: BTreeMap<Span, Winding>,
 }
 
-impl Sweep {
-    fn over(edges: impl Iterator<Item = (Span, Winding)>) -> Sweep {
-        let of_rings = edges.filter(|(span, net)| *net != [0, 0] && !span.is_level());
-        let mut starts: Vec<(Span, Winding)> = of_rings.collect();
-        starts.sort_unstable_by(|(s, _), (t, _)| s.start_order(t));
-        let mut ends: Vec<Span> = starts.iter().map(|(span, _)| *span).collect();
-        ends.sort_unstable_by_key(|span| span.high.y);
+impl Sweep<'_> {
+    fn over(rings: &Rings) -> Sweep<'_> {
         Sweep {
-            starts,
-            ends,
+            rings,
             started: 0,
             ended: 0,
             status: BTreeMap::new(),
@@ -66,7 +89,7 @@ impl Sweep {
 
     /// Moves the line to just north of `y`.
     fn advance(&mut self, y: i64) {
-        while let Some(&(start, net)) = self.starts.get(self.started)
+        while let Some(&(start, net)) = self.rings.starts.get(self.started)
             && start.low.y <= y
         {
             self.drop_until(start.low.y);
@@ -80,7 +103,7 @@ impl Sweep {
 
     /// Drops edges that end at `y` or before: what ends at a level goes before what starts there.
     fn drop_until(&mut self, y: i64) {
-        while let Some(end) = self.ends.get(self.ended)
+        while let Some(end) = self.rings.ends.get(self.ended)
             && end.high.y <= y
         {
             self.status.remove(end);

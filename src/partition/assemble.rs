@@ -5,8 +5,7 @@ use crate::geometry::point::Point;
 use crate::geometry::point::Xy;
 use crate::noding::arrangement::Arrangement;
 use crate::noding::rim::rim_side;
-use crate::partition::chain::beginnings;
-use crate::partition::chain::chains;
+use crate::partition::chain::Chains;
 use crate::partition::error::Error;
 use crate::partition::nest::halves_below;
 use crate::partition::star::HalfEdge;
@@ -18,18 +17,31 @@ use crate::partition::subdomains::Partition;
 use crate::partition::subdomains::Subdomain;
 use crate::partition::walk::begin_at_least;
 
-/// The partition with these walks, which [`join`](crate::partition::join) made.
-pub fn assemble(
+/// The walks inside the domain, by face.
+pub struct Faces {
+    walks: Vec<Vec<HalfEdge>>,
+    /// Twice the area of each walk, cells².
+    area2: Vec<i128>,
+    /// For each walk, the outer walk of its face (itself, if it is one).
+    face: Vec<u32>,
+}
+
+/// The faces with these walks, which [`join`](crate::partition::join) made.
+pub fn faces(
     domain: &Domain,
     arrangement: &Arrangement,
     mut walks: Vec<Vec<HalfEdge>>,
-    corner_deg: f64,
-) -> Result<Partition, Error> {
+) -> Result<Faces, Error> {
     drop_outside(domain, arrangement, &mut walks)?;
     let area2: Vec<i128> = walks.iter().map(|walk| area2(arrangement, walk)).collect();
-    let face = faces(domain, arrangement, &walks, &area2)?;
-    let mut curves = chains(domain, arrangement, corner_deg);
-    let begins = beginnings(&curves, arrangement);
+    let face = outer_walks(domain, arrangement, &walks, &area2)?;
+    Ok(Faces { walks, area2, face })
+}
+
+/// The partition with these faces and [`chains`].
+pub fn assemble(domain: &Domain, faces: Faces, chains: Chains) -> Partition {
+    let Faces { walks, area2, face } = faces;
+    let Chains { mut curves, begins } = chains;
     let mut subdomains = vec![Subdomain::default(); walks.len()];
     let mut area2_of = vec![0; walks.len()];
     for (w, walk) in walks.iter().enumerate() {
@@ -49,7 +61,7 @@ pub fn assemble(
     }
     subdomains.retain(|subdomain| !subdomain.walks.is_empty());
     number(&mut subdomains, &mut curves);
-    Ok(Partition { curves, subdomains })
+    Partition { curves, subdomains }
 }
 
 /// Sorts sub-domains by their least half-curve and tells the curves.
@@ -147,7 +159,7 @@ pub(super) fn area2(arrangement: &Arrangement, walk: &[HalfEdge]) -> i128 {
 }
 
 /// For each walk, the outer walk of its face (itself, if it is one).
-fn faces(
+fn outer_walks(
     domain: &Domain,
     arrangement: &Arrangement,
     walks: &[Vec<HalfEdge>],

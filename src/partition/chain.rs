@@ -11,11 +11,24 @@ use crate::partition::subdomains::Curve;
 use crate::partition::subdomains::HalfCurve;
 use crate::partition::subdomains::OUTSIDE;
 
-/// The curves by their least edges; their sides are `OUTSIDE` until they are known.
-///
+/// All curves, before their sides are known.
+pub struct Chains {
+    /// By their least edges; their sides are `OUTSIDE`.
+    pub(super) curves: Vec<Curve>,
+    /// For each half-edge, the half-curve that it begins, or `None` inside one.
+    pub(super) begins: Vec<Option<HalfCurve>>,
+}
+
+/// The chains of an arrangement; they need nothing of its faces.
+pub fn chains(domain: &Domain, arrangement: &Arrangement, corner_deg: f64) -> Chains {
+    let curves = curves(domain, arrangement, corner_deg);
+    let begins = beginnings(&curves, arrangement);
+    Chains { curves, begins }
+}
+
 /// The least edge of a chain is run from its first node to its second; it contains the least node
 /// of the chain, at which a closed chain without a junction begins.
-pub(super) fn chains(domain: &Domain, arrangement: &Arrangement, corner_deg: f64) -> Vec<Curve> {
+fn curves(domain: &Domain, arrangement: &Arrangement, corner_deg: f64) -> Vec<Curve> {
     let stars = Stars::of_all(arrangement);
     let is_junction: Vec<bool> = (0..arrangement.points.len())
         .map(|node| is_junction(domain, arrangement, stars.of(node), corner_deg))
@@ -119,8 +132,7 @@ fn turns_by_more_than(
     turn_deg.abs() > corner_deg
 }
 
-/// For each half-edge, the half-curve that it begins, or `None` inside one.
-pub(super) fn beginnings(curves: &[Curve], arrangement: &Arrangement) -> Vec<Option<HalfCurve>> {
+fn beginnings(curves: &[Curve], arrangement: &Arrangement) -> Vec<Option<HalfCurve>> {
     let mut begins = vec![None; 2 * arrangement.edges.len()];
     for (curve, at) in curves.iter().enumerate() {
         let last = at.edges.len() - 1;

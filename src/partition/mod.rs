@@ -33,7 +33,7 @@
 //! the number of islands.
 //!
 //! # Not here
-//! Threads (`pipeline` calls [`walk_tile`] in parallel and then [`assemble`]); what lines mean;
+//! Threads (`pipeline` calls [`walk_tile`] in parallel, [`chains`] beside it, and then [`assemble`]); what lines mean;
 //! cutting of large sub-domains (`seams`).
 
 pub mod check;
@@ -52,8 +52,12 @@ use crate::noding::arrangement::Arrangement;
 use crate::partition::error::Error;
 use crate::partition::subdomains::Partition;
 
+pub use assemble::Faces;
 pub use assemble::assemble;
+pub use assemble::faces;
 pub use assemble::remeasure;
+pub use chain::Chains;
+pub use chain::chains;
 pub use locate::sides;
 pub use locate::subdomains_at;
 pub use star::HalfEdge;
@@ -83,5 +87,7 @@ pub fn partition(
         .into_iter()
         .map(|tile| walk_tile(arrangement, tile))
         .collect();
-    assemble(domain, arrangement, join(walked), options.corner_deg)
+    let faces = faces(domain, arrangement, join(walked))?;
+    let chains = chains(domain, arrangement, options.corner_deg);
+    Ok(assemble(domain, faces, chains))
 }

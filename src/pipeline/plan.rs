@@ -17,7 +17,6 @@ use crate::geometry::point::Xy;
 use crate::ingest;
 use crate::intervals;
 use crate::intervals::goals::Goals;
-use crate::noding;
 use crate::noding::arrangement::Arrangement;
 use crate::noding::arrangement::Piece;
 use crate::parity;
@@ -276,8 +275,7 @@ fn clean(
 ) -> Result<Cleaned, Error> {
     let tile_cells = tiles::tile_cells(job, domain);
     let (noded, clipped) = watch.stage("noding", 1000, |count| -> Result<_, Error> {
-        let noded = tiles::node(domain, tile_cells, count);
-        let (noded, clipped) = noding::clip(domain, noded);
+        let (noded, clipped) = tiles::node(domain, tile_cells, count);
         let note = format!("{} nodes, {} edges", noded.points.len(), noded.edges.len());
         Ok(((noded, clipped), note))
     })?;

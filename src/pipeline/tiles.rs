@@ -1,19 +1,25 @@
 //! Work that is done tile by tile on all cores: noding, clean-up, and the walks of the partition.
 
 use crate::cleanup;
+use crate::cleanup::Band;
 use crate::cleanup::Cleaned;
+use crate::cleanup::District;
 use crate::domain::line::Domain;
 use crate::domain::size::SizeWish;
 use crate::noding;
+use crate::noding::Gathered;
+use crate::noding::Tile;
 use crate::noding::arrangement::Arrangement;
+use crate::noding::arrangement::Piece;
 use crate::partition;
 use crate::partition::subdomains::Partition;
 use crate::pipeline::error::Error;
 use crate::pipeline::job::Job;
 use rayon::iter::IndexedParallelIterator;
 use rayon::iter::IntoParallelIterator;
-use rayon::iter::IntoParallelRefIterator;
+use rayon::iter::ParallelBridge;
 use rayon::iter::ParallelIterator;
+use std::cmp::Reverse;
 
 /// Tiles a side of the domain, unless the job says otherwise: some hundred tiles keep two to many
 /// cores busy to the end, and a tile of a few thousand segments stays in cache.
@@ -39,18 +45,43 @@ pub(super) fn tile_cells(job: &Job, domain: &Domain) -> i32 {
     wished.clamp(whole / 1000 + 1, 1 << 29) as i32
 }
 
-/// Nodes all tiles in parallel and stitches them; phase A.
-pub(super) fn node(domain: &Domain, tile_cells: i32, count: &(dyn Fn(u64) + Sync)) -> Arrangement {
+/// Nodes all tiles in parallel, stitches and clips them; phase A. Returns the arrangement and what was
+/// cut away.
+pub(super) fn node(
+    domain: &Domain,
+    tile_cells: i32,
+    count: &(dyn Fn(u64) + Sync),
+) -> (Arrangement, Vec<Piece>) {
     let tiles = noding::tiles(domain, &noding::Options { tile_cells });
     let share = 1000 / tiles.len().max(1) as u64;
-    let nodes = (tiles.par_iter().with_max_len(ONE))
-        .map(|tile| {
-            let nodes = noding::node_tile(domain, tile);
-            count(share);
-            nodes
+    let segments = |tile: &Tile| tile.segments.len() as i64;
+    let found = largest_first(&tiles, segments, |tile| {
+        let nodes = noding::node_tile(domain, tile);
+        count(share);
+        nodes
+    });
+    clip(domain, stitch(domain, noding::gather(found)))
+}
+
+fn stitch(domain: &Domain, gathered: Gathered) -> Arrangement {
+    let (nodes, stretches) = rayon::join(|| gathered.nodes(), || gathered.stretches(domain));
+    drop(gathered);
+    Arrangement::from_sorted(nodes, stretches)
+}
+
+/// Each core finds the sides of a share of the edges: for more shares, each would meet all rings again.
+fn clip(domain: &Domain, arrangement: Arrangement) -> (Arrangement, Vec<Piece>) {
+    let rings = noding::Rings::of(domain, &arrangement);
+    let edges = arrangement.edges.len() as u32;
+    let share = edges.div_ceil(rayon::current_num_threads() as u32).max(1);
+    let shares: Vec<u32> = (0..edges).step_by(share as usize).collect();
+    let inside: Vec<[bool; 2]> = (shares.into_par_iter())
+        .flat_map_iter(|from| {
+            let until = (from + share).min(edges);
+            rings.sides_inside(&arrangement, from..until)
         })
         .collect();
-    noding::stitch(domain, nodes)
+    noding::clip_to(domain, arrangement, &inside)
 }
 
 /// Cleans all districts in parallel, then all bands between them, and joins them. They do not depend
@@ -62,20 +93,24 @@ pub(super) fn clean(
     options: &cleanup::Options,
     count: &(dyn Fn(u64) + Sync),
 ) -> Cleaned {
-    let site = cleanup::site(domain, sizes, arrangement, options, &cleanup::GRAIN);
+    let (measure, layout) = rayon::join(
+        || cleanup::Measure::new(domain, sizes, options),
+        || cleanup::layout(domain, sizes, &arrangement, &cleanup::GRAIN),
+    );
+    let site = cleanup::site(measure, layout, arrangement, options);
     let parts = site.districts().len() + site.bands().len();
     let share = 1000 / (parts + 1) as u64;
     let counted = |made| {
         count(share);
         made
     };
-    let made = (site.districts().par_iter().with_max_len(ONE))
-        .map(|it| counted(cleanup::clean_district(&site, it)))
-        .collect();
+    let made = largest_first(site.districts(), District::work, |it| {
+        counted(cleanup::clean_district(&site, it))
+    });
     let met = cleanup::meet(&site, made);
-    let bands = (site.bands().par_iter().with_max_len(ONE))
-        .map(|it| counted(cleanup::clean_band(&site, &met, it)))
-        .collect();
+    let bands = largest_first(site.bands(), Band::work, |it| {
+        counted(cleanup::clean_band(&site, &met, it))
+    });
     let (joined, given) = rayon::join(|| cleanup::join(&site, met, bands), || site.given());
     let (threaded, (moved, left)) = rayon::join(
         || joined.threaded(&given),
@@ -91,10 +126,32 @@ pub(super) fn partition(
     tile_cells: i32,
     corner_deg: f64,
 ) -> Result<Partition, Error> {
-    let tiles = partition::tiles(arrangement, tile_cells as u32);
-    let walked = (tiles.into_par_iter().with_max_len(ONE))
-        .map(|tile| partition::walk_tile(arrangement, tile))
+    let walks = || {
+        let tiles = partition::tiles(arrangement, tile_cells as u32);
+        let walked = (tiles.into_par_iter().with_max_len(ONE))
+            .map(|tile| partition::walk_tile(arrangement, tile))
+            .collect();
+        partition::join(walked)
+    };
+    let (faces, chains) = rayon::join(
+        || partition::faces(domain, arrangement, walks()),
+        || partition::chains(domain, arrangement, corner_deg),
+    );
+    Ok(partition::assemble(domain, faces?, chains))
+}
+
+/// Does all parts on all cores, and keeps their order. Small parts come last: then no core is left with a large one
+/// when the others have none.
+fn largest_first<P: Sync, R: Send>(
+    parts: &[P],
+    work: impl Fn(&P) -> i64,
+    make: impl Fn(&P) -> R + Sync,
+) -> Vec<R> {
+    let mut order: Vec<usize> = (0..parts.len()).collect();
+    order.sort_by_key(|&it| Reverse(work(&parts[it])));
+    let mut made: Vec<(usize, R)> = (order.into_iter().par_bridge())
+        .map(|it| (it, make(&parts[it])))
         .collect();
-    let walks = partition::join(walked);
-    Ok(partition::assemble(domain, arrangement, walks, corner_deg)?)
+    made.sort_unstable_by_key(|it| it.0);
+    made.into_iter().map(|it| it.1).collect()
 }

@@ -271,7 +271,7 @@ proptest! {
     fn promises_hold_over_many_districts(domain in messy_domain(), size in 1.0..5.0_f64) {
         let input = noded(&domain);
         let sizes = SizeWish::uniform(size, 1);
-        let site = cleanup::site(&domain, &sizes, input.clone(), &usual(&domain), &TINY);
+        let site = site(&domain, &sizes, input.clone(), &TINY);
         let made = site.districts().iter().map(|it| cleanup::clean_district(&site, it)).collect();
         let met = cleanup::meet(&site, made);
         let bands = site.bands().iter().map(|it| cleanup::clean_band(&site, &met, it)).collect();
@@ -283,9 +283,21 @@ proptest! {
     #[test]
     fn districts_at_once_or_one_by_one_are_the_same(domain in messy_domain()) {
         let sizes = SizeWish::uniform(3.0, 1);
-        let site = || cleanup::site(&domain, &sizes, noded(&domain), &usual(&domain), &TINY);
+        let site = || site(&domain, &sizes, noded(&domain), &TINY);
         prop_assert_eq!(joined_backwards(site()), joined_at_once(site()));
     }
+}
+
+fn site<'a>(
+    domain: &'a Domain,
+    sizes: &SizeWish,
+    arrangement: Arrangement,
+    grain: &cleanup::Grain,
+) -> cleanup::Site<'a> {
+    let options = usual(domain);
+    let measure = cleanup::Measure::new(domain, sizes, &options);
+    let layout = cleanup::layout(domain, sizes, &arrangement, grain);
+    cleanup::site(measure, layout, arrangement, &options)
 }
 
 /// All districts, then all bands, each from the last to the first.
@@ -331,7 +343,7 @@ fn a_town_is_cleaned_by_districts() {
     }
     let town = domain(&lines);
     let sizes = SizeWish::uniform(12.0, 1);
-    let site = cleanup::site(&town, &sizes, noded(&town), &usual(&town), &cleanup::GRAIN);
+    let site = site(&town, &sizes, noded(&town), &cleanup::GRAIN);
     assert!(site.districts().len() > 3, "{}", site.districts().len());
     assert_eq!(site.bands().len(), site.districts().len() - 1);
     assert_eq!(joined_at_once(site), cleaned(&town, 12.0));
