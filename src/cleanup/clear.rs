@@ -27,6 +27,44 @@ pub(super) struct Room<'a> {
 }
 
 impl Graph<'_> {
+    /// True if `v` can go to `p` with its edges to these ends, all of its neighbours but one that may be at `p`, and
+    /// loses the others. `vacant`: `p`, if no node may be there.
+    ///
+    /// It is enough that no edge touches the way of `v` itself, and that the triangles which its edges sweep hold no
+    /// node. For what touches a new edge from outside comes into its triangle there; it cannot leave it by the old
+    /// edge, which nothing crosses, nor end in it, so that it leaves by the way of `v`.
+    pub(super) fn star_is_clear(
+        &self,
+        v: u32,
+        p: Point,
+        ends: &[u32],
+        vacant: Option<Point>,
+    ) -> bool {
+        let q = self.point(v);
+        let is_met = self.index.any_at([q, p, p], 0.0, |held| {
+            let [s, t] = held.at();
+            !held.ends.contains(&v) && touches(q, p, s, t)
+        });
+        !is_met
+            && ends.iter().all(|&end| {
+                let end = self.point(end);
+                !on_segment(q, p, end) && !self.holds_node([q, end, p], vacant)
+            })
+    }
+
+    /// True if a node lies in the closed triangle, other than at its corners, or at one that is to be vacant.
+    fn holds_node(&self, triangle: [Point; 3], vacant: Option<Point>) -> bool {
+        let [a, b, c] = triangle;
+        self.index.any_node_near(a, b, height(a, b, c), |node, at| {
+            let is_in = match triangle.contains(&at) {
+                true => vacant == Some(at),
+                false => in_triangle(at, triangle),
+            };
+            // those that lost all their edges are nowhere
+            is_in && self.degree(node) > 0
+        })
+    }
+
     /// True if the sweeps meet no node and their fresh segments no edge. Equal edges do not count:
     /// they will take up the fresh one.
     ///

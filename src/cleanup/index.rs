@@ -264,18 +264,33 @@ impl Index {
     /// The same, each once, in no order that means anything.
     #[inline]
     pub(super) fn each_node_near(&self, a: Point, b: Point, reach: f64, mut tell: impl FnMut(u32)) {
+        self.any_node_near(a, b, reach, |node, _| {
+            tell(node);
+            false
+        });
+    }
+
+    /// True if one of them is what is looked for: told with where it is.
+    #[inline]
+    pub(super) fn any_node_near(
+        &self,
+        a: Point,
+        b: Point,
+        reach: f64,
+        mut is: impl FnMut(u32, Point) -> bool,
+    ) -> bool {
         let nodes = self.nodes.as_ref().expect("nodes were taken up");
         nodes.heads.grid.passed(a, b, reach + 1.0, |cell| {
             let mut next = *nodes.heads.get(cell);
             while next > 0 {
                 let (p, after) = nodes.links[next as usize - 1];
-                if is_within(p, [a, b], reach) {
-                    tell(next - 1);
+                if is_within(p, [a, b], reach) && is(next - 1, p) {
+                    return true;
                 }
                 next = after;
             }
             false
-        });
+        })
     }
 }
 

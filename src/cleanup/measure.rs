@@ -158,9 +158,7 @@ impl<'a> Measure<'a> {
     /// The point of `line` at `station_m`.
     pub(super) fn point(&self, line: LineId, station_m: f64) -> Xy {
         let vertices = self.vertices_of(line);
-        let k = vertices.partition_point(|it| it.station_m <= station_m);
-        let k = k.clamp(1, vertices.len() - 1);
-        between(vertices[k - 1], vertices[k], station_m)
+        point_before(vertices, passed(vertices, station_m), station_m)
     }
 
     /// True if the line as read turns there at a corner: by more than the corner angle, between
@@ -277,20 +275,28 @@ impl<'a> Measure<'a> {
     /// The station between `low_m` and `high_m` whose point is nearest to `p`, and how far it is.
     pub(super) fn nearest(&self, line: LineId, low_m: f64, high_m: f64, p: Xy) -> (f64, f64) {
         let vertices = self.vertices_of(line);
-        let first = vertices.partition_point(|it| it.station_m <= low_m);
-        let mut k = first.clamp(1, vertices.len() - 1) - 1;
-        let mut best = (low_m, f64::INFINITY);
-        while k + 1 < vertices.len() && vertices[k].station_m < high_m {
-            let (one, next) = (vertices[k], vertices[k + 1]);
-            let (from, to) = (one.station_m.max(low_m), next.station_m.min(high_m));
-            let (a, b) = (between(one, next, from), between(one, next, to));
-            let (away, t) = to_segment(p, a, b);
-            if away < best.1 {
-                best = (from + t * (to - from), away);
-            }
-            k += 1;
+        nearest_after(vertices, passed(vertices, low_m), [low_m, high_m], p)
+    }
+
+    /// The same of the part around `at_m` that reaches three times as far along the line as `p` is away from there; and
+    /// whether there is such a part.
+    pub(super) fn nearest_around(
+        &self,
+        line: LineId,
+        at_m: f64,
+        [low_m, high_m]: [f64; 2],
+        p: Xy,
+    ) -> (f64, f64, bool) {
+        let vertices = self.vertices_of(line);
+        let mut k = passed(vertices, at_m);
+        let away_m = 3.0 * distance(point_before(vertices, k, at_m), p);
+        let (from, to) = ((at_m - away_m).max(low_m), (at_m + away_m).min(high_m));
+        // it begins a vertex or two back: no need to search again
+        while k > 0 && vertices[k - 1].station_m > from {
+            k -= 1;
         }
-        best
+        let (station_m, least_m) = nearest_after(vertices, k, [from, to], p);
+        (station_m, least_m, from < to)
     }
 
     /// The grid point nearest to `p`.
@@ -304,6 +310,36 @@ impl<'a> Measure<'a> {
     pub(super) fn metres(&self, p: Point) -> Xy {
         self.grid().local_m(p)
     }
+}
+
+/// How many of these vertices a station has passed.
+#[inline]
+fn passed(vertices: &[Vertex], station_m: f64) -> usize {
+    vertices.partition_point(|it| it.station_m <= station_m)
+}
+
+/// The point at a station that has passed `k` vertices.
+#[inline]
+fn point_before(vertices: &[Vertex], k: usize, station_m: f64) -> Xy {
+    let k = k.clamp(1, vertices.len() - 1);
+    between(vertices[k - 1], vertices[k], station_m)
+}
+
+/// [`Measure::nearest`], where `low_m` has passed `k` vertices.
+fn nearest_after(vertices: &[Vertex], k: usize, [low_m, high_m]: [f64; 2], p: Xy) -> (f64, f64) {
+    let mut k = k.clamp(1, vertices.len() - 1) - 1;
+    let mut best = (low_m, f64::INFINITY);
+    while k + 1 < vertices.len() && vertices[k].station_m < high_m {
+        let (one, next) = (vertices[k], vertices[k + 1]);
+        let (from, to) = (one.station_m.max(low_m), next.station_m.min(high_m));
+        let (a, b) = (between(one, next, from), between(one, next, to));
+        let (away, t) = to_segment(p, a, b);
+        if away < best.1 {
+            best = (from + t * (to - from), away);
+        }
+        k += 1;
+    }
+    best
 }
 
 /// The point at a station between two vertices.

@@ -16,7 +16,6 @@ use crate::cleanup::measure::ROUNDING_M;
 use crate::cleanup::stations::Absorbed;
 use crate::geometry::point::Point;
 use crate::geometry::point::Xy;
-use crate::geometry::predicates::on_segment;
 use crate::geometry::predicates::orient;
 use crate::noding::arrangement::Piece;
 
@@ -315,36 +314,6 @@ impl Graph<'_> {
             let b = self.metres(draft.to);
             (draft.pieces.iter()).all(|piece| self.measure.fits(piece, a, b, share))
         })
-    }
-
-    /// True if `v` can go to `p` with its edges to these ends, and lose the others.
-    fn star_is_clear(&self, v: u32, p: Point, ends: &[u32], vacant: Option<Point>) -> bool {
-        let q = self.point(v);
-        // the way of the node itself is a side of every triangle that an edge of it sweeps
-        let mut fresh: SmallVec<[(Point, Point); 2]> = smallvec![(q, p)];
-        let mut sweeps: SmallVec<[Sweep; 8]> = SmallVec::new();
-        for &end in ends {
-            let end = self.point(end);
-            if on_segment(q, p, end) {
-                return false;
-            }
-            fresh.push((p, end));
-            sweeps.push(Sweep {
-                triangle: [q, end, p],
-                fresh: std::mem::take(&mut fresh),
-            });
-        }
-        if ends.is_empty() {
-            let triangle = [q, p, p];
-            sweeps.push(Sweep { triangle, fresh });
-        }
-        let gone: SmallVec<[u32; 6]> = self.star[v as usize].iter().copied().collect();
-        let room = Room {
-            gone: &gone,
-            mover: Some(q),
-            vacant,
-        };
-        self.is_clear(&sweeps, &room)
     }
 
     /// For each draft at `node` the edge that takes it up; `None` if that may not be.

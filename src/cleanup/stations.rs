@@ -8,7 +8,6 @@ use crate::cleanup::edge::Pieces;
 use crate::cleanup::edge::turned;
 use crate::cleanup::graph::Graph;
 use crate::cleanup::measure::ROUNDING_M;
-use crate::cleanup::measure::distance;
 use crate::geometry::point::Xy;
 use crate::noding::arrangement::Piece;
 
@@ -204,13 +203,11 @@ impl Graph<'_> {
     /// are away from there.
     fn passing_m(&self, one: &Piece, other: &Piece, p: Xy) -> (f64, f64) {
         let (low, high) = (one.to_m.min(other.to_m), one.to_m.max(other.to_m));
-        let line = one.line;
-        let away = 3.0 * distance(self.measure.point(line, one.from_m), p);
-        let (from, to) = ((one.from_m - away).max(low), (one.from_m + away).min(high));
-        let (station_m, away_m) = self.measure.nearest(line, from, to, p);
+        let (station_m, away_m, is_part) =
+            (self.measure).nearest_around(one.line, one.from_m, [low, high], p);
         let kept_m = kept_inside(station_m, low, high);
         // the nearest place of a part: elsewhere the line may be nearer
-        let is_known = kept_m == station_m && from < to;
+        let is_known = kept_m == station_m && is_part;
         (kept_m, if is_known { away_m } else { 0.0 })
     }
 
