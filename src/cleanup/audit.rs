@@ -113,7 +113,7 @@ pub(super) fn uncovered(
 ) -> Vec<Stretch> {
     let own = &carriers[carriers.partition_point(|it| it.0 < line)..];
     let own = &own[..own.partition_point(|it| it.0 == line)];
-    let limit = graph.measure.tolerance_m[line as usize] + slack_m;
+    let limit = graph.measure.tolerance_m(line) + slack_m;
     let away = |station: f64| {
         let p = graph.measure.point(line, station);
         (own.iter())
@@ -169,7 +169,7 @@ fn reason(graph: &Graph, known: &[&Dropped], (line, from_m, to_m): Stretch) -> R
 
 /// True if a whole line, shorter than the mesh size, lies within tolerance of one node.
 fn is_a_node(graph: &Graph, line: LineId, from_m: f64, to_m: f64) -> bool {
-    let limit = graph.measure.tolerance_m[line as usize];
+    let limit = graph.measure.tolerance_m(line);
     let is_whole = to_m - from_m >= graph.measure.length_m(line) - ROUNDING_M;
     if !is_whole || to_m - from_m > graph.measure.size_m[line as usize] {
         return false;

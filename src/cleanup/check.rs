@@ -105,7 +105,7 @@ fn check_distances(graph: &Graph) -> Result<(), Defect> {
         for piece in &graph.edges[edge as usize].pieces {
             let away_m = graph.measure.deviation_m(piece, a, b);
             let line = piece.line;
-            if away_m > graph.measure.tolerance_m[line as usize] + rounding {
+            if away_m > graph.measure.tolerance_m(line) + rounding {
                 return Err(Defect::TooFar { edge, line, away_m });
             }
         }
@@ -123,7 +123,7 @@ fn check_meetings(graph: &Graph) -> Result<(), Defect> {
         let stretches: Vec<(LineId, f64)> = pieces.map(|it| (it.line, it.from_m)).collect();
         for (k, &(one, at_m)) in stretches.iter().enumerate() {
             for &(other, there_m) in stretches[..k].iter().filter(|it| it.0 != one) {
-                let limits = [one, other].map(|line| graph.measure.tolerance_m[line as usize]);
+                let limits = [one, other].map(|line| graph.measure.tolerance_m(line));
                 let [p, q] = [(one, at_m), (other, there_m)]
                     .map(|(line, station_m)| graph.measure.point(line, station_m));
                 if distance(p, q) > limits[0] + limits[1] + rounding {

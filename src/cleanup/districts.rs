@@ -7,7 +7,7 @@
 //!    tiles nor threads.
 //!
 //! # Method
-//! 1. [`site`]: rectangles that hold about equally many edges: the longer side is halved at the
+//! 1. [`layout`]: rectangles that hold about equally many edges: the longer side is halved at the
 //!    median of the nodes, while there are many edges and room for two halves. Along each border
 //!    between two halves lies a *band*; it ends where the band of an earlier border begins, so that
 //!    bands are disjoint as well (`layout`). Work that fits into one rectangle has no districts.

@@ -85,8 +85,9 @@ impl Joined<'_> {
         let (arrangement, torn) = match self.is_on {
             true => {
                 dropped.sort_by_key(|it| it.line);
-                let (domain, limits_m) = (graph.measure.domain, &graph.measure.tolerance_m);
-                thread::thread(domain, graph.arrangement(), given, &dropped, limits_m)
+                let (domain, measure) = (graph.measure.domain, graph.measure);
+                let limit_m = |line| measure.tolerance_m(line);
+                thread::thread(domain, graph.arrangement(), given, &dropped, limit_m)
             }
             false => {
                 // stretches of less than a cell, there and back, that the graph does not keep

@@ -31,7 +31,7 @@ pub(super) fn gaps(graph: &Graph) -> Gaps {
     for edge in graph.edges.iter().filter(|edge| edge.alive) {
         let [a, b] = edge.ends.map(|node| graph.metres(node));
         for piece in &edge.pieces {
-            let limit_m = measure.tolerance_m[piece.line as usize];
+            let limit_m = measure.tolerance_m(piece.line);
             match measure.deviation_m(piece, a, b) <= limit_m + ROUNDING_M {
                 true => near.push(piece),
                 false => carriers.extend(edge.ends),
@@ -56,7 +56,7 @@ impl Gaps {
         let measure = graph.measure;
         let mut nodes = self.carriers.clone();
         for &(line, from_m, to_m) in &self.stretches {
-            let limit_m = measure.tolerance_m[line as usize];
+            let limit_m = measure.tolerance_m(line);
             let reach = limit_m / measure.grid().cell_m;
             let way: Vec<Xy> = measure.way(&Piece { line, from_m, to_m }).collect();
             for pair in way.windows(2) {

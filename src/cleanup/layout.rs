@@ -167,22 +167,17 @@ fn halves(
     let (mut below, mut above) = (window, window);
     *axis(&mut below.max) = at;
     *axis(&mut above.min) = at;
-    let all = || district.edges.iter().copied();
-    let half = |window, edges| District { window, edges };
-    [
-        half(
-            below,
-            all()
-                .filter(|&it| ends(it).iter().any(|&p| p < at))
-                .collect(),
-        ),
-        half(
-            above,
-            all()
-                .filter(|&it| ends(it).iter().any(|&p| p >= at))
-                .collect(),
-        ),
-    ]
+    let (mut lower, mut upper) = (Vec::with_capacity(half), Vec::with_capacity(half));
+    for &edge in &district.edges {
+        let ends = ends(edge);
+        if ends.iter().any(|&p| p < at) {
+            lower.push(edge);
+        }
+        if ends.iter().any(|&p| p >= at) {
+            upper.push(edge);
+        }
+    }
+    [(below, lower), (above, upper)].map(|(window, edges)| District { window, edges })
 }
 
 /// The window without a margin.

@@ -18,11 +18,10 @@ use std::iter::once;
 /// The input lines with their stations, sizes, ranks and tolerances, in metres.
 pub struct Measure<'a> {
     pub(super) domain: &'a Domain,
-    /// The vertices of all lines; line `i` starts at `start[i]`.
+    /// The vertices of all lines: those of lines that begin near each other are near each other, as they are read by
+    /// turns.
     vertices: Vec<Vertex>,
-    start: Vec<u32>,
-    /// How far each line may be from its edges.
-    pub(super) tolerance_m: Vec<f64>,
+    courses: Vec<Course>,
     /// Wished edge length along each line.
     pub(super) size_m: Vec<f64>,
     /// Who stays where it is when two lines meet: the higher one. Rings before held lines before
@@ -37,6 +36,16 @@ pub struct Measure<'a> {
     without: Vec<Step>,
     /// Wished edge length where no line says otherwise.
     pub(super) default_m: f64,
+}
+
+/// What is looked up for a line whenever a stretch of it is measured.
+#[derive(Clone, Copy, Debug, Default)]
+struct Course {
+    /// Its vertices.
+    from: u32,
+    until: u32,
+    /// How far it may be from its edges.
+    tolerance_m: f64,
 }
 
 /// A vertex of an input line; together, as they are always read together.
@@ -68,32 +77,36 @@ impl<'a> Measure<'a> {
         let mut made = Measure {
             domain,
             vertices: Vec::new(),
-            start: vec![0],
-            tolerance_m: Vec::with_capacity(domain.lines.len()),
-            size_m: Vec::with_capacity(domain.lines.len()),
-            rank: Vec::with_capacity(domain.lines.len()),
-            keeps_loops: Vec::with_capacity(domain.lines.len()),
+            courses: vec![Course::default(); domain.lines.len()],
+            size_m: vec![0.0; domain.lines.len()],
+            rank: vec![0.0; domain.lines.len()],
+            keeps_loops: vec![false; domain.lines.len()],
             min_edge: options.min_edge,
             corner_deg: options.corner_deg,
             without: options.without.clone(),
             default_m: sizes.default_m,
         };
-        for (id, line) in domain.lines.iter().enumerate() {
+        for id in by_place(domain) {
+            let line = &domain.lines[id];
             let stations = domain.stations_m(id as LineId);
             let length = *stations.last().expect("a line has two points");
+            let from = made.vertices.len() as u32;
             let vertices = stations.iter().zip(&line.points);
             made.vertices
                 .extend(vertices.map(|(&station_m, &p)| Vertex {
                     station_m,
                     at: domain.grid.local_m(p),
                 }));
-            made.start.push(made.vertices.len() as u32);
             let kind = usize::from(line.kind);
-            made.size_m.push(sizes.by_kind_m[kind]);
-            made.tolerance_m.push(options.tolerance_m(sizes, kind));
+            made.courses[id] = Course {
+                from,
+                until: made.vertices.len() as u32,
+                tolerance_m: options.tolerance_m(sizes, kind),
+            };
             let rule = &options.by_kind[kind];
-            made.rank.push(length + standing(line.role, rule));
-            made.keeps_loops.push(rule.small_loops == SmallLoops::Keep);
+            made.size_m[id] = sizes.by_kind_m[kind];
+            made.rank[id] = length + standing(line.role, rule);
+            made.keeps_loops[id] = rule.small_loops == SmallLoops::Keep;
         }
         made
     }
@@ -103,9 +116,15 @@ impl<'a> Measure<'a> {
         !self.without.contains(&step)
     }
 
+    /// How far a line may be from its edges.
+    #[inline]
+    pub(super) fn tolerance_m(&self, line: LineId) -> f64 {
+        self.courses[line as usize].tolerance_m
+    }
+
     /// False if no line may be moved at all.
     pub(super) fn allows_any(&self) -> bool {
-        self.tolerance_m.iter().any(|&it| it > 0.0)
+        self.courses.iter().any(|it| it.tolerance_m > 0.0)
     }
 
     /// True if loops of this line must stay loops.
@@ -146,13 +165,13 @@ impl<'a> Measure<'a> {
 
     #[inline]
     fn vertices_of(&self, line: LineId) -> &[Vertex] {
-        let line = line as usize;
-        &self.vertices[self.start[line] as usize..self.start[line + 1] as usize]
+        let Course { from, until, .. } = self.courses[line as usize];
+        &self.vertices[from as usize..until as usize]
     }
 
     /// Length of a line as read, metres.
     pub(super) fn length_m(&self, line: LineId) -> f64 {
-        self.vertices[self.start[line as usize + 1] as usize - 1].station_m
+        self.vertices[self.courses[line as usize].until as usize - 1].station_m
     }
 
     /// The point of `line` at `station_m`.
@@ -203,7 +222,7 @@ impl<'a> Measure<'a> {
 
     /// True if [`Measure::deviation_m`] is at most `share` of the line's tolerance.
     pub(super) fn fits(&self, piece: &Piece, a: Xy, b: Xy, share: f64) -> bool {
-        let limit = share * self.tolerance_m[piece.line as usize];
+        let limit = share * self.tolerance_m(piece.line);
         let vertices = self.vertices_of(piece.line);
         let (from, to) = ((piece.from_m, a), (piece.to_m, b));
         let (low, high) = match from.0 <= to.0 {
@@ -242,7 +261,7 @@ impl<'a> Measure<'a> {
     /// The same of a stretch that is not near from end to end: by the middles of the quarters of its segments, as
     /// `audit` measures, but against this one edge. It is no less.
     pub(super) fn parts_beyond_m(&self, piece: &Piece, a: Xy, b: Xy) -> f64 {
-        let limit_m = NEAR * self.tolerance_m[piece.line as usize];
+        let limit_m = NEAR * self.tolerance_m(piece.line);
         let mut beyond_m = 0.0;
         let mut way = self.way(piece);
         let mut from = way.next().expect("a stretch has two ends");
@@ -310,6 +329,28 @@ impl<'a> Measure<'a> {
     pub(super) fn metres(&self, p: Point) -> Xy {
         self.grid().local_m(p)
     }
+}
+
+/// All lines, those that begin near each other mostly near each other: by the bits of both coordinates in turn.
+fn by_place(domain: &Domain) -> Vec<usize> {
+    const MASKS: [(u32, u64); 5] = [
+        (16, 0x0000_ffff_0000_ffff),
+        (8, 0x00ff_00ff_00ff_00ff),
+        (4, 0x0f0f_0f0f_0f0f_0f0f),
+        (2, 0x3333_3333_3333_3333),
+        (1, 0x5555_5555_5555_5555),
+    ];
+    let spread = |v: i32| {
+        let above_zero = (i64::from(v) - i64::from(i32::MIN)) as u64;
+        MASKS.iter().fold(above_zero, |bits, (shift, mask)| {
+            (bits | bits << shift) & mask
+        })
+    };
+    let place = |p: Point| spread(p.x) << 1 | spread(p.y);
+    let all = domain.lines.iter().map(|line| place(line.points[0]));
+    let mut order: Vec<(u64, usize)> = all.zip(0..).collect();
+    order.sort_unstable();
+    order.into_iter().map(|it| it.1).collect()
 }
 
 /// How many of these vertices a station has passed.

@@ -36,7 +36,8 @@ pub fn lost(
     cleaned: &Arrangement,
 ) -> Vec<Finding> {
     let measure = Measure::new(domain, sizes, options);
-    let tolerance_m = measure.tolerance_m.iter().copied().fold(0.0, f64::max);
+    let lines = 0..domain.lines.len() as u32;
+    let tolerance_m = lines.map(|it| measure.tolerance_m(it)).fold(0.0, f64::max);
     let radius_m = SLACK * tolerance_m.max(0.5 * sizes.default_m);
     let witnesses = witnesses(&Faces::of(&Graph::new(input, &measure)), radius_m);
     let graph = Graph::new(cleaned, &measure);

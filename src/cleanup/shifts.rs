@@ -179,7 +179,7 @@ impl<'m> Shifts<'m> {
             let (a, b) = graph.ends_m(edge);
             let pieces = graph.edges[edge as usize].pieces.iter();
             pieces.map(move |piece| {
-                let usual_m = share * measure.tolerance_m[piece.line as usize];
+                let usual_m = share * measure.tolerance_m(piece.line);
                 usual_m.max(measure.deviation_m(piece, a, b))
             })
         });
@@ -245,7 +245,7 @@ pub fn check(
             return Err(format!("edge {id} is {new_m} m long, and was {old_m} m"));
         }
         for (old, new) in one.pieces.iter().zip(&other.pieces) {
-            let usual_m = WIDE * measure.tolerance_m[new.line as usize];
+            let usual_m = WIDE * measure.tolerance_m(new.line);
             let limit_m = usual_m.max(measure.deviation_m(old, a, b)) + rounding_m;
             let away_m = measure.deviation_m(new, c, d);
             if away_m > limit_m {

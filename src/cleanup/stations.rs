@@ -114,7 +114,7 @@ impl Graph<'_> {
     /// longer themselves. False if there is none within tolerance.
     pub(super) fn lodge(&mut self, lost: &Piece, w: u32) -> bool {
         let mut best: Option<(f64, u32, Piece)> = None;
-        let limit = self.measure.tolerance_m[lost.line as usize];
+        let limit = self.measure.tolerance_m(lost.line);
         for &edge in &self.star[w as usize] {
             let (a, b) = self.ends_m(edge);
             for piece in [*lost, turned(lost)] {
@@ -140,7 +140,7 @@ impl Graph<'_> {
                     let next = tail[0].pieces.iter_mut().find(|it| continues(it, one));
                     if let Some(other) = next {
                         let (station_m, least_m) = self.passing_m(one, other, p);
-                        let limit_m = share * self.measure.tolerance_m[one.line as usize];
+                        let limit_m = share * self.measure.tolerance_m(one.line);
                         if least_m > limit_m + ROUNDING_M {
                             return false;
                         }

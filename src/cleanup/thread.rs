@@ -48,7 +48,7 @@ pub(super) fn thread(
     arrangement: Arrangement,
     given: &[Stretch],
     dropped: &[Dropped],
-    tolerance_m: &[f64],
+    tolerance_m: impl Fn(LineId) -> f64,
 ) -> (Arrangement, Vec<Dropped>) {
     let mut by_line: Vec<(LineId, Step)> = Vec::with_capacity(arrangement.pieces.len());
     let mut others: Vec<(u32, Piece)> = Vec::new();
@@ -73,7 +73,7 @@ pub(super) fn thread(
                 .then(a.high_m.total_cmp(&b.high_m))
                 .then(a.edge.cmp(&b.edge))
         });
-        let limit_m = tolerance_m[line as usize];
+        let limit_m = tolerance_m(line);
         // What should be there: beyond it, the line had left the domain, or was given up.
         let given = of_line(given, line, |it| it.0);
         let gone = of_line(dropped, line, |it| it.line);
