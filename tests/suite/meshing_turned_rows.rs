@@ -53,8 +53,8 @@ fn pair(name: &str, loops: &Loops) -> [Xy; 2] {
 #[test]
 fn a_row_turns_from_one_side_to_the_next() {
     let spacing = |p: Xy| match p {
-        [_, y] if y == 0.0 => 8.0 / 9.0,
-        [x, _] if x == 8.0 => 0.8,
+        [_, 0.0] => 8.0 / 9.0,
+        [8.0, _] => 0.8,
         _ => 1.0,
     };
     pair("turns", &ring(&L, &spacing));
