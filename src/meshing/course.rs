@@ -15,7 +15,6 @@ pub(crate) fn courses(visits: &Visits) -> Option<Vec<Course>> {
 }
 
 /// A walk on the lattice.
-#[derive(Clone)]
 pub(crate) struct Course {
     pub visits: std::ops::Range<usize>,
     /// Direction of the edge from each visit on.

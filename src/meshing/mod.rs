@@ -23,7 +23,7 @@
 //! - `mapping`: one of the `patterns` (grid, stars of 3, 5 and 6 `spokes`, a 3-5 `pair`) over the
 //!   whole of a sub-domain with few sides; else `submap`: where all walks close on a lattice (`course`), its
 //!   `lattice_cells`, without irregular nodes (Whiteley and others 1996); else `turned_rows`: where the outer walk
-//!   nearly closes, such cells and a few rows that turn (`row`), with two irregular nodes each.
+//!   nearly closes, such cells and a few rows that turn (`turned_row`), with two irregular nodes each.
 //! - `catalogue`: loops of up to twelve nodes that no pattern suits, by the best of all their
 //!   quadrangulations.
 //! - `looping`: `bridges` join all walks to one loop; `splitting` halves it by the best line again
@@ -82,7 +82,6 @@ pub mod patch;
 mod patterns;
 mod refill;
 mod regular;
-mod row;
 mod rows;
 mod scatter;
 pub mod score;
@@ -95,6 +94,7 @@ mod strip;
 mod strip_border;
 mod submap;
 mod triangulate;
+mod turned_row;
 mod turned_rows;
 mod visits;
 mod windows;
@@ -102,6 +102,7 @@ mod windows;
 use crate::geometry::point::Xy;
 use crate::meshing::check::Defect;
 use crate::meshing::contest::Contest;
+use crate::meshing::course::courses;
 use crate::meshing::draft::Draft;
 use crate::meshing::finish::Effort;
 use crate::meshing::finish::finish;
@@ -178,9 +179,11 @@ pub fn mesh(loops: &Loops, options: &Options) -> Result<Meshed, Defect> {
 
 fn draft(method: Method, visits: &Visits, loops: &Loops) -> Option<Draft> {
     match method {
-        Method::Mapping => mapping::mesh(visits, loops)
-            .or_else(|| submap::mesh(visits, loops))
-            .or_else(|| turned_rows::mesh(visits, loops)),
+        Method::Mapping => mapping::mesh(visits, loops).or_else(|| {
+            let mut walks = courses(visits)?;
+            submap::mesh(visits, &mut walks, loops.size_m)
+                .or_else(|| turned_rows::mesh(visits, &walks, loops.size_m))
+        }),
         Method::Looping => looping::mesh(visits, loops.size_m),
         Method::Strip => strip::mesh(visits, loops),
         Method::Indirect => {

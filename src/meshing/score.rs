@@ -77,7 +77,7 @@ impl Score {
     ///
     /// An irregular node may cost nine tenths of a perfect quad's shape in all. (Measured on a city of 10 000
     /// segments where lattices with few such nodes compete with looping: three quarters for a half leave .24 %
-    /// irregular nodes fewer, for .0009 of the mean shape and .002 of the 5 % quantile; nine tenths .1 % more.)
+    /// irregular nodes fewer, for .0009 of the mean shape and .002 of the 5 % quantile; nine tenths another .08 %.)
     ///
     /// Cells below [`BRISK`] lose more: fewer and larger quads with poorer corners are better then,
     /// as long as no corner is [`POOR`]. (Measured on six cities against .35 and a loss of .4, with the worth of

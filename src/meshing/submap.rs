@@ -15,12 +15,10 @@
 use crate::geometry::point::Xy;
 use crate::geometry::quad::distance;
 use crate::meshing::course::Course;
-use crate::meshing::course::courses;
 use crate::meshing::draft::Draft;
 use crate::meshing::lattice_cells::Cells;
 use crate::meshing::lattice_cells::Placed;
 use crate::meshing::lattice_cells::carried;
-use crate::meshing::patch::Loops;
 use crate::meshing::patch::Method;
 use crate::meshing::sheet::Sheet;
 use crate::meshing::visits::Visits;
@@ -36,12 +34,11 @@ const WASTE: f64 = 3.0;
 const BETWEEN: f64 = 0.25;
 
 /// The cells of the lattice on which the walks close; `None` if they do not.
-pub(crate) fn mesh(visits: &Visits, loops: &Loops) -> Option<Draft> {
-    let mut walks = courses(visits)?;
+pub(crate) fn mesh(visits: &Visits, walks: &mut [Course], size_m: f64) -> Option<Draft> {
     if !walks.iter().all(Course::is_closed) {
         return None;
     }
-    let sheet = cover(visits, &mut walks, loops.size_m)?;
+    let sheet = cover(visits, walks, size_m)?;
     Some(sheet.into_draft(visits.len(), Method::Mapping))
 }
 
@@ -99,14 +96,7 @@ fn wished_shifts(visits: &Visits, walks: &mut [Course]) -> Vec<Xy> {
     let outer: Vec<(Xy, Xy)> = (walks[0].visits.clone().zip(&walks[0].at))
         .map(|(visit, at)| (visits.nodes[visit], at.map(f64::from)))
         .collect();
-    let scale = scale_per_m(visits);
-    let (sin, cos) = axis_rad.sin_cos();
-    let onto = |p: Xy| {
-        [
-            scale * (cos * p[0] + sin * p[1]),
-            scale * (cos * p[1] - sin * p[0]),
-        ]
-    };
+    let onto = onto_lattice(visits, &walks[0]);
     let shift = |walk: &mut Course| {
         let off_rad = walk.axis_rad(visits) - axis_rad;
         let quarters = (off_rad / std::f64::consts::FRAC_PI_2).round() as i32;
@@ -123,11 +113,18 @@ fn wished_shifts(visits: &Visits, walks: &mut [Course]) -> Vec<Xy> {
     walks[1..].iter_mut().map(shift).collect()
 }
 
-/// Lattice edges a metre: the walks have as many as visits.
-pub(crate) fn scale_per_m(visits: &Visits) -> f64 {
+/// The plain map onto the lattice: turned as the outer walk lies, one lattice edge an edge of the walks on average.
+pub(crate) fn onto_lattice(visits: &Visits, outer: &Course) -> impl Fn(Xy) -> Xy + Copy + use<> {
     let length = |visit: u32| {
         let ends = [visit, visits.next(visit)].map(|it| visits.nodes[it as usize]);
         distance(ends[0], ends[1])
     };
-    visits.len() as f64 / (0..visits.len() as u32).map(length).sum::<f64>()
+    let scale = visits.len() as f64 / (0..visits.len() as u32).map(length).sum::<f64>();
+    let (sin, cos) = outer.axis_rad(visits).sin_cos();
+    move |p: Xy| {
+        [
+            scale * (cos * p[0] + sin * p[1]),
+            scale * (cos * p[1] - sin * p[0]),
+        ]
+    }
 }

@@ -7,7 +7,7 @@
 //!    that turns, or two neighbours in one direction for a row that turns back. Which: those without which
 //!    the walk lies nearest to its lattice.
 //! 2. The shorter walks are covered by `submap`.
-//! 3. `row` opens the lattice between the edges that were taken out, for a row of quads.
+//! 3. `turned_row` opens the lattice between the edges that were taken out, for a row of quads.
 //!
 //! Such rows are dislocations of a lattice. The pairs of three and five quads at their ends are those of Peng, Zhang,
 //! Kobayashi and Wonka (2011), who move them about in a mesh, where here they are laid where the walk asks for them.
@@ -17,18 +17,16 @@
 use crate::geometry::point::Xy;
 use crate::meshing::course::Course;
 use crate::meshing::course::STEP;
-use crate::meshing::course::courses;
 use crate::meshing::course::minus;
 use crate::meshing::draft::Draft;
-use crate::meshing::patch::Loops;
 use crate::meshing::patch::Method;
-use crate::meshing::row::Rim;
-use crate::meshing::row::Row;
-use crate::meshing::row::insert;
 use crate::meshing::sheet::Sheet;
 use crate::meshing::submap::SWEEPS;
 use crate::meshing::submap::cover;
-use crate::meshing::submap::scale_per_m;
+use crate::meshing::submap::onto_lattice;
+use crate::meshing::turned_row::Rim;
+use crate::meshing::turned_row::Row;
+use crate::meshing::turned_row::insert;
 use crate::meshing::visits::Visits;
 
 /// No more rows than this turn in one sub-domain. (Measured on synthetic cities: with 5 or 8 as many irregular
@@ -41,8 +39,7 @@ const TRIED: usize = 16;
 
 /// The lattice with its turned rows; `None` if the outer walk closes, if it needs more rows, if an inner one does not
 /// close, or if there is no place for the rows.
-pub(crate) fn mesh(visits: &Visits, loops: &Loops) -> Option<Draft> {
-    let walks = courses(visits)?;
+pub(crate) fn mesh(visits: &Visits, walks: &[Course], size_m: f64) -> Option<Draft> {
     let outer = &walks[0];
     if outer.is_closed() || !walks[1..].iter().all(Course::is_closed) {
         return None;
@@ -53,7 +50,7 @@ pub(crate) fn mesh(visits: &Visits, loops: &Loops) -> Option<Draft> {
         return None;
     }
     let choices = choices(visits, outer);
-    let laid = (choices.iter()).filter_map(|rows| lay(visits, &walks, rows, loops.size_m));
+    let laid = (choices.iter()).filter_map(|rows| lay(visits, walks, rows, size_m));
     let mean = |sheet: &Sheet| sheet.shape(Sheet::over(visits).mark()).mean();
     let best = (laid.take(LAID))
         .map(|sheet| (mean(&sheet), sheet))
@@ -91,13 +88,10 @@ struct Fit<'a> {
 
 impl Fit<'_> {
     fn of<'a>(visits: &Visits, outer: &'a Course) -> Fit<'a> {
-        let (sin, cos) = outer.axis_rad(visits).sin_cos();
-        let scale = scale_per_m(visits);
-        let off = |(node, at): (&Xy, &[i32; 2])| {
-            [
-                scale * (cos * node[0] + sin * node[1]) - f64::from(at[0]),
-                scale * (cos * node[1] - sin * node[0]) - f64::from(at[1]),
-            ]
+        let onto = onto_lattice(visits, outer);
+        let off = |(&node, at): (&Xy, &[i32; 2])| {
+            let [x, y] = onto(node);
+            [x - f64::from(at[0]), y - f64::from(at[1])]
         };
         Fit {
             outer,

@@ -29,6 +29,16 @@ impl Random {
     }
 }
 
+/// An L of three squares, 8 across.
+pub const L: [Xy; 6] = [
+    [0.0, 0.0],
+    [8.0, 0.0],
+    [8.0, 4.0],
+    [4.0, 4.0],
+    [4.0, 8.0],
+    [0.0, 8.0],
+];
+
 /// Collects directed edges with the sub-domain on the left, then traces the walks.
 #[derive(Default)]
 pub struct Draw {

@@ -1,6 +1,7 @@
 //! Sub-domains whose walks close on a lattice.
 
 use super::cases::Draw;
+use super::cases::L;
 use super::cases::Random;
 use super::verify;
 use polder::geometry::point::Xy;
@@ -82,15 +83,7 @@ fn bent_walks_have_the_cells_of_straight_ones() {
 #[test]
 fn walks_that_do_not_close_are_left_to_others() {
     let mut draw = Draw::default();
-    let l = [
-        [0.0, 0.0],
-        [8.0, 0.0],
-        [8.0, 4.0],
-        [4.0, 4.0],
-        [4.0, 8.0],
-        [0.0, 8.0],
-    ];
-    draw.ring(&l, &|p| if p[1] == 0.0 { 0.5 } else { 1.0 });
+    draw.ring(&L, &|p| if p[1] == 0.0 { 0.5 } else { 1.0 });
     let meshed = verify("not closed", &draw.loops(1.0), &[Method::Mapping]);
     assert_eq!(meshed.patch.method, Method::LastResort);
 }

@@ -1,21 +1,13 @@
 //! Sub-domains whose outer walk nearly closes on a lattice: rows that turn.
 
 use super::cases::Draw;
+use super::cases::L;
 use super::cases::Random;
 use super::verify;
 use polder::geometry::point::Xy;
 use polder::meshing::Meshed;
 use polder::meshing::patch::Loops;
 use polder::meshing::patch::Method;
-
-const L: [Xy; 6] = [
-    [0.0, 0.0],
-    [8.0, 0.0],
-    [8.0, 4.0],
-    [4.0, 4.0],
-    [4.0, 8.0],
-    [0.0, 8.0],
-];
 
 fn ring(corners: &[Xy], spacing: &dyn Fn(Xy) -> f64) -> Loops {
     let mut draw = Draw::default();

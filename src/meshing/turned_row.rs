@@ -160,6 +160,15 @@ fn rename(quad: &mut [u32; 4], from: u32, to: u32) {
     }
 }
 
+/// Gives the quads beside each node of a way another node, that on the right instead of that on the left.
+fn part(sheet: &mut Sheet, beside: &[Vec<u32>], left: &[u32], right: &[u32]) {
+    for ((quads, &from), &to) in beside.iter().zip(left).zip(right) {
+        for &quad in quads {
+            rename(&mut sheet.quads[quad as usize], from, to);
+        }
+    }
+}
+
 /// Opens the sheet along `way` for a row of quads, whose ends are the edges from `edges` on.
 fn open(sheet: &mut Sheet, sides: &Sides, way: &[u32], edges: [u32; 2]) {
     let last = way.len() - 1;
@@ -178,11 +187,7 @@ fn open(sheet: &mut Sheet, sides: &Sides, way: &[u32], edges: [u32; 2]) {
     for quad in &mut sheet.quads {
         rename(quad, way[last], left[last]);
     }
-    for (k, quads) in beside.iter().enumerate() {
-        for &quad in quads {
-            rename(&mut sheet.quads[quad as usize], left[k], right[k]);
-        }
-    }
+    part(sheet, &beside, &left, &right);
     for k in 0..last {
         let quad = [left[k], right[k], right[k + 1], left[k + 1]];
         sheet.quads.push(quad);
@@ -203,11 +208,7 @@ fn turn_back(sheet: &mut Sheet, sides: &Sides, way: &[u32], first: u32) {
         middle.push(sheet.node(at));
         right.push(sheet.node(at));
     }
-    for (k, quads) in beside.iter().enumerate() {
-        for &quad in quads {
-            rename(&mut sheet.quads[quad as usize], left[k], right[k]);
-        }
-    }
+    part(sheet, &beside, left, &right);
     for k in 0..last - 1 {
         (sheet.quads).push([left[k], middle[k], middle[k + 1], left[k + 1]]);
         (sheet.quads).push([middle[k], right[k], right[k + 1], middle[k + 1]]);
