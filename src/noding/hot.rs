@@ -19,7 +19,7 @@ use rstar::primitives::GeomWithData;
 pub struct TileNodes {
     /// Centres of the hot pixels that the tile owns, sorted.
     pub points: Vec<Point>,
-    /// Where a segment passes through a hot pixel, whose index into `points` is the node; by point.
+    /// Where a segment passes through a hot pixel, whose index into `points` is the node; by segment.
     pub stops: Vec<Stop>,
 }
 
@@ -68,7 +68,7 @@ pub fn node_tile(domain: &Domain, tile: &Tile) -> TileNodes {
     points.dedup();
     let mut passed = passages(&tree, &points);
     passed.sort_unstable();
-    let stop = |(node, index): (u32, u32)| {
+    let stop = |(index, node): (u32, u32)| {
         let segment = tile.segments[index as usize];
         let (a, b) = segment.ends(domain);
         Stop {
@@ -81,7 +81,7 @@ pub fn node_tile(domain: &Domain, tile: &Tile) -> TileNodes {
     TileNodes { points, stops }
 }
 
-/// Which segment passes which of the hot pixels: (pixel, segment), in no order.
+/// Which segment passes which of the hot pixels: (segment, pixel), in no order.
 fn passages(tree: &RTree<Passing>, points: &[Point]) -> Vec<(u32, u32)> {
     let pixels = points.iter().zip(0..);
     let pixels = pixels.map(|(p, node)| GeomWithData::new([p.x, p.y], node));
@@ -91,7 +91,7 @@ fn passages(tree: &RTree<Passing>, points: &[Point]) -> Vec<(u32, u32)> {
         let &[x, y] = pixel.geom();
         passes_pixel(passing.a, passing.b, Point::new(x, y))
     })
-    .map(|(passing, pixel)| (pixel.data, passing.index))
+    .map(|(passing, pixel)| (passing.index, pixel.data))
     .collect()
 }
 

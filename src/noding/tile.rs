@@ -6,6 +6,7 @@ use crate::geometry::point::LIMIT;
 use crate::geometry::point::Point;
 use crate::geometry::window::Window;
 use crate::noding::Options;
+use rustc_hash::FxHashMap;
 
 /// A segment of a line: from `points[at]` to `points[at + 1]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -38,21 +39,28 @@ pub struct Tile {
 pub fn tiles(domain: &Domain, options: &Options) -> Vec<Tile> {
     let side = options.tile_cells;
     assert!((1..=LIMIT).contains(&side), "tile_cells: {side}");
-    let mut passed: Vec<([i32; 2], Segment)> = Vec::new();
+    let mut tiles: Vec<([i32; 2], Vec<Segment>)> = Vec::new();
+    let mut place: FxHashMap<[i32; 2], usize> = FxHashMap::default();
     for (line, of) in domain.lines.iter().enumerate() {
         for (at, pair) in of.points.windows(2).enumerate() {
             let segment = Segment {
                 line: line as u32,
                 at: at as u32,
             };
-            each_tile(pair[0], pair[1], side, |key| passed.push((key, segment)));
+            each_tile(pair[0], pair[1], side, |key| {
+                let at = *place.entry(key).or_insert(tiles.len());
+                if at == tiles.len() {
+                    tiles.push((key, Vec::new()));
+                }
+                tiles[at].1.push(segment);
+            });
         }
     }
-    passed.sort_unstable();
-    (passed.chunk_by(|s, t| s.0 == t.0))
-        .map(|group| Tile {
-            window: window(group[0].0, side),
-            segments: group.iter().map(|(_, segment)| *segment).collect(),
+    tiles.sort_unstable_by_key(|it| it.0);
+    (tiles.into_iter())
+        .map(|(key, segments)| Tile {
+            window: window(key, side),
+            segments,
         })
         .collect()
 }
