@@ -53,6 +53,7 @@ impl Graph<'_> {
             Deed::Added => {
                 self.unlink(self.edges.len() as u32 - 1);
                 self.edges.pop();
+                self.pieces.pop();
             }
             Deed::Removed(edge) => {
                 self.edges[edge as usize].alive = true;

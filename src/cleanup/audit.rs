@@ -3,7 +3,6 @@
 use crate::cleanup::changes::Dropped;
 use crate::cleanup::changes::Reason;
 use crate::cleanup::changes::Tally;
-use crate::cleanup::edge::Edge;
 use crate::cleanup::graph::Graph;
 use crate::cleanup::measure::Measure;
 use crate::cleanup::measure::distance;
@@ -24,8 +23,9 @@ const ROUNDING_M: f64 = 1e-6;
 
 /// What came in and is not in the result, with the reason. `given`: the [`stretches`] of the input.
 pub(super) fn missing(graph: &Graph, given: &[Stretch]) -> Vec<Dropped> {
-    let live = graph.edges.iter().filter(|edge| edge.alive);
-    let there = stretches(graph.measure, live.flat_map(|edge| &edge.pieces));
+    let live = graph.live();
+    let pieces = live.iter().flat_map(|&edge| &graph.pieces[edge as usize]);
+    let there = stretches(graph.measure, pieces);
     let carriers = carriers(graph);
     let mut known: Vec<&Dropped> = graph.dropped.iter().collect();
     known.sort_by_key(|it| it.line);
@@ -96,7 +96,7 @@ pub(super) fn subtract(wanted: &[Stretch], there: &[Stretch]) -> Vec<Stretch> {
 pub(super) fn carriers(graph: &Graph) -> Vec<(LineId, u32)> {
     let mut carriers = Vec::new();
     for edge in graph.live() {
-        let pieces = &graph.edges[edge as usize].pieces;
+        let pieces = &graph.pieces[edge as usize];
         carriers.extend(pieces.iter().map(|piece| (piece.line, edge)));
     }
     carriers.sort_unstable();
@@ -190,15 +190,15 @@ fn is_a_node(graph: &Graph, line: LineId, from_m: f64, to_m: f64) -> bool {
 /// the one edge and to the other part at a place that is not always the nearest to both.
 pub(super) fn displacements(graph: &Graph) -> Tally {
     let mut samples: Vec<Sample> = Vec::new();
-    let live = graph.edges.iter().filter(|edge| edge.alive);
-    let pieces: usize = live.map(|edge| edge.pieces.len()).sum();
+    let live = graph.live();
+    let pieces: usize = live.iter().map(|&it| graph.pieces[it as usize].len()).sum();
     // one for each segment of each piece, which hold the vertices between them
     samples.reserve(pieces + graph.measure.vertices_len());
     // at vertices, which have no length
     let mut worst = [0.0_f64; 2];
     let mut way: Vec<Xy> = Vec::new();
-    for edge in graph.edges.iter().filter(|edge| edge.alive) {
-        for piece in &edge.pieces {
+    for edge in live {
+        for piece in &graph.pieces[edge as usize] {
             let sides = sides_of_line(graph, edge, piece.line);
             let away_m = |p: Xy| {
                 // one root for all of them
@@ -240,10 +240,11 @@ pub(super) fn displacements(graph: &Graph) -> Tally {
 }
 
 /// An edge and the edges of the same line that it meets.
-fn sides_of_line(graph: &Graph, edge: &Edge, line: LineId) -> SmallVec<[(Xy, Xy); 4]> {
-    let stars = edge.ends.map(|node| &graph.star[node as usize]);
+fn sides_of_line(graph: &Graph, edge: u32, line: LineId) -> SmallVec<[(Xy, Xy); 4]> {
+    let ends = graph.edges[edge as usize].ends;
+    let stars = ends.map(|node| &graph.star[node as usize]);
     let carries = |edge: u32| {
-        let mut pieces = graph.edges[edge as usize].pieces.iter();
+        let mut pieces = graph.pieces[edge as usize].iter();
         pieces.any(|piece| piece.line == line)
     };
     let near = stars.into_iter().flatten().filter(|&&it| carries(it));

@@ -168,7 +168,7 @@ impl Grid {
         let (bx, by) = (f64::from(b.x), f64::from(b.y));
         let (low, high) = (ay.min(by), ay.max(by));
         let range = self.range([ax - margin, low - margin], [bx + margin, high + margin]);
-        if range.is_row() {
+        if a == b || range.is_row() {
             // most segments are shorter than a cell
             return range.any(visit);
         }

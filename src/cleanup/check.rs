@@ -102,7 +102,7 @@ fn check_distances(graph: &Graph) -> Result<(), Defect> {
     let rounding = 2.0 * graph.measure.grid().cell_m;
     for edge in graph.live() {
         let (a, b) = graph.ends_m(edge);
-        for piece in &graph.edges[edge as usize].pieces {
+        for piece in &graph.pieces[edge as usize] {
             let away_m = graph.measure.deviation_m(piece, a, b);
             let line = piece.line;
             if away_m > graph.measure.tolerance_m(line) + rounding {
@@ -119,7 +119,7 @@ fn check_meetings(graph: &Graph) -> Result<(), Defect> {
     let rounding = 4.0 * graph.measure.grid().cell_m;
     for node in graph.all_nodes() {
         let edges = graph.star[node as usize].iter();
-        let pieces = edges.flat_map(|&edge| graph.edges[edge as usize].pieces_from(node));
+        let pieces = edges.flat_map(|&edge| graph.pieces_from(edge, node));
         let stretches: Vec<(LineId, f64)> = pieces.map(|it| (it.line, it.from_m)).collect();
         for (k, &(one, at_m)) in stretches.iter().enumerate() {
             for &(other, there_m) in stretches[..k].iter().filter(|it| it.0 != one) {

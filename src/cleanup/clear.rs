@@ -55,14 +55,11 @@ impl Graph<'_> {
     /// True if a node lies in the closed triangle, other than at its corners, or at one that is to be vacant.
     fn holds_node(&self, triangle: [Point; 3], vacant: Option<Point>) -> bool {
         let [a, b, c] = triangle;
-        self.index.any_node_near(a, b, height(a, b, c), |node, at| {
-            let is_in = match triangle.contains(&at) {
-                true => vacant == Some(at),
-                false => in_triangle(at, triangle),
-            };
-            // those that lost all their edges are nowhere
-            is_in && self.degree(node) > 0
-        })
+        let is_in = |at: Point| match triangle.contains(&at) {
+            true => vacant == Some(at),
+            false => in_triangle(at, triangle),
+        };
+        self.index.any_node_at(triangle, height(a, b, c), is_in)
     }
 
     /// True if the sweeps meet no node and their fresh segments no edge. Equal edges do not count:

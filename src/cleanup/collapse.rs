@@ -215,7 +215,7 @@ fn drop_loop(graph: &mut Graph, face: &Face) -> bool {
     let is_free =
         (face.walk.iter()).all(|&(edge, _)| graph.edges[edge as usize].inside == [true; 2]);
     let is_kept = (face.walk.iter())
-        .flat_map(|&(edge, _)| &graph.edges[edge as usize].pieces)
+        .flat_map(|&(edge, _)| &graph.pieces[edge as usize])
         .any(|piece| graph.measure.keeps_loops(piece.line));
     let length: f64 = (face.walk.iter())
         .map(|&(edge, _)| graph.ends_m(edge))

@@ -14,8 +14,6 @@ pub(super) type Pieces = SmallVec<[Piece; 2]>;
 #[derive(Clone, Debug)]
 pub(super) struct Edge {
     pub(super) ends: [u32; 2],
-    /// From `ends[0]` to `ends[1]`.
-    pub(super) pieces: Pieces,
     /// Is the domain on its left, on its right? Kept through all merges: the pieces alone could not
     /// tell a closed gap from a closed wall.
     pub(super) inside: [bool; 2],
@@ -40,15 +38,6 @@ impl Edge {
 
     pub(super) fn is_rim(&self) -> bool {
         self.inside[0] != self.inside[1]
-    }
-
-    /// Its pieces in the direction away from `node`.
-    pub(super) fn pieces_from(&self, node: u32) -> Pieces {
-        if self.ends[0] == node {
-            self.pieces.clone()
-        } else {
-            self.pieces.iter().map(turned).collect()
-        }
     }
 
     /// Its sides (left, right) in the direction away from `node`.

@@ -372,19 +372,27 @@ fn stays_open(graph: &Graph, pair: [u32; 2], place: Xy) -> bool {
         let all = nodes.iter();
         all.map(|&it| graph.metres(it)).collect()
     };
-    let was = [0, 1].map(|k| sharpest_deg(graph.metres(pair[k]), &at(&near[k])));
-    if sharpest_deg(place, &at(&ends)) < ANGLE_DEG.min(was[0]).min(was[1]) {
+    let was_deg = || {
+        let each = [0, 1].map(|k| sharpest_deg(graph.metres(pair[k]), &at(&near[k])));
+        each[0].min(each[1])
+    };
+    if !is_open(sharpest_deg(place, &at(&ends)), was_deg) {
         return false;
     }
     ends.iter().all(|&end| {
-        let before = at(&graph.neighbours(end));
         let mut after = graph.neighbours(end);
         after.retain(|it| !pair.contains(it));
         let mut after = at(&after);
         after.push(place);
         let hub = graph.metres(end);
-        sharpest_deg(hub, &after) >= ANGLE_DEG.min(sharpest_deg(hub, &before))
+        let was_deg = || sharpest_deg(hub, &at(&graph.neighbours(end)));
+        is_open(sharpest_deg(hub, &after), was_deg)
     })
+}
+
+/// True if an angle is not sharp, or no sharper than it was; most are not, whatever they were.
+fn is_open(now_deg: f64, was_deg: impl FnOnce() -> f64) -> bool {
+    now_deg >= ANGLE_DEG || now_deg >= was_deg()
 }
 
 /// The least angle between neighbouring directions from `hub`, degrees.

@@ -28,13 +28,13 @@ pub(super) struct Gaps {
 pub(super) fn gaps(graph: &Graph) -> Gaps {
     let measure = graph.measure;
     let (mut near, mut carriers) = (Vec::new(), Vec::new());
-    for edge in graph.edges.iter().filter(|edge| edge.alive) {
-        let [a, b] = edge.ends.map(|node| graph.metres(node));
-        for piece in &edge.pieces {
+    for edge in graph.live() {
+        let (a, b) = graph.ends_m(edge);
+        for piece in &graph.pieces[edge as usize] {
             let limit_m = measure.tolerance_m(piece.line);
             match measure.deviation_m(piece, a, b) <= limit_m + ROUNDING_M {
                 true => near.push(piece),
-                false => carriers.extend(edge.ends),
+                false => carriers.extend(graph.edges[edge as usize].ends),
             }
         }
     }
@@ -62,7 +62,7 @@ impl Gaps {
             for pair in way.windows(2) {
                 let [p, q] = [pair[0], pair[1]].map(|it| measure.on_grid(it));
                 graph.index.any(p, q, reach, |held| {
-                    let mut pieces = graph.edges[held.edge as usize].pieces.iter();
+                    let mut pieces = graph.pieces[held.edge as usize].iter();
                     let (a, b) = graph.ends_m(held.edge);
                     if pieces.any(|piece| piece.line == line)
                         && apart_m([pair[0], pair[1]], [a, b]) <= limit_m

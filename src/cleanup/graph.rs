@@ -48,6 +48,9 @@ pub(super) struct Graph<'a> {
     /// Least wished edge length of the edges at each node, metres.
     size_at_m: Vec<f64>,
     pub(super) edges: Vec<Edge>,
+    /// What each edge carries, from its first end to its second; apart from it, as most that is asked of an edge is
+    /// where it is.
+    pub(super) pieces: Vec<Pieces>,
     pub(super) index: Index,
     /// Every node that an edge was taken from or given to, in order: what later steps look at.
     pub(super) touched: Vec<u32>,
@@ -102,6 +105,7 @@ impl<'a> Graph<'a> {
             star: vec![SmallVec::new(); at.len()],
             size_at_m: vec![f64::INFINITY; at.len()],
             edges: Vec::with_capacity(4 * at.len()),
+            pieces: Vec::with_capacity(4 * at.len()),
             index: Index::new(side.max(8.0), around(&at), at.len()),
             touched: Vec::with_capacity(4 * at.len()),
             changed: Vec::with_capacity(4 * at.len()),
@@ -117,9 +121,9 @@ impl<'a> Graph<'a> {
         thin_out(&mut pieces);
         let id = self.edges.len() as u32;
         let (size_m, rank) = self.size_and_rank(&pieces);
+        self.pieces.push(pieces);
         self.edges.push(Edge {
             ends,
-            pieces,
             inside,
             size_m,
             rank,
@@ -135,6 +139,9 @@ impl<'a> Graph<'a> {
     pub(super) fn link(&mut self, edge: u32) {
         let it = &self.edges[edge as usize];
         for node in it.ends {
+            if self.star[node as usize].is_empty() {
+                self.index.insert_node(node, self.at[node as usize]);
+            }
             self.star[node as usize].push(edge);
             let least_m = &mut self.size_at_m[node as usize];
             *least_m = least_m.min(it.size_m);
@@ -155,16 +162,29 @@ impl<'a> Graph<'a> {
         let ends = self.edges[edge as usize].ends;
         for node in ends {
             self.star[node as usize].retain(|held| *held != edge);
+            if self.star[node as usize].is_empty() {
+                self.index.remove_node(node, self.at[node as usize]);
+            }
             self.measure_size(node);
         }
         let [a, b] = ends.map(|node| self.point(node));
         self.index.remove(edge, a, b);
     }
 
+    /// From now on the index knows where nodes with edges are.
+    pub(super) fn take_nodes(&mut self) {
+        let nodes = self.all_nodes();
+        let at = nodes.iter().map(|&node| (node, self.at[node as usize]));
+        self.index.take_nodes(at);
+    }
+
     /// Puts a node to another place, with its edges.
     pub(super) fn place(&mut self, node: u32, to: Point) {
         let from = std::mem::replace(&mut self.at[node as usize], to);
-        self.index.move_node(node, from, to);
+        // without edges it is nowhere
+        if !self.star[node as usize].is_empty() {
+            self.index.move_node(node, from, to);
+        }
         for k in 0..self.star[node as usize].len() {
             let edge = self.star[node as usize][k];
             let ends = self.edges[edge as usize].ends;
@@ -187,7 +207,6 @@ impl<'a> Graph<'a> {
     /// A new node without edges.
     pub(super) fn add_node(&mut self, p: Point) -> u32 {
         let node = self.at.len() as u32;
-        self.index.insert_node(node, p);
         self.at.push(p);
         self.stand.push(Stand::Open);
         self.star.push(SmallVec::new());
@@ -198,8 +217,7 @@ impl<'a> Graph<'a> {
 
     /// Takes the newest node back, which has no edges.
     pub(super) fn pop_node(&mut self) {
-        let p = self.at.pop().expect("a node was added");
-        self.index.remove_node(self.at.len() as u32, p);
+        self.at.pop();
         self.stand.pop();
         self.star.pop();
         self.size_at_m.pop();
@@ -253,7 +271,7 @@ impl<'a> Graph<'a> {
 
     /// Takes the edge out for good, with a row for every piece.
     pub(super) fn delete(&mut self, edge: u32, reason: Reason) {
-        for piece in self.edges[edge as usize].pieces.clone() {
+        for piece in self.pieces[edge as usize].clone() {
             self.drop_piece(&piece, reason);
         }
         self.remove(edge);
@@ -275,18 +293,18 @@ impl<'a> Graph<'a> {
             return self.add([from, draft.to], draft.pieces, draft.inside);
         };
         let it = &mut self.edges[edge as usize];
+        let pieces = &mut self.pieces[edge as usize];
         if it.ends[0] == from {
-            it.pieces.extend(draft.pieces);
+            pieces.extend(draft.pieces);
             it.inside = inside;
         } else {
-            it.pieces.extend(draft.pieces.iter().map(turned));
+            pieces.extend(draft.pieces.iter().map(turned));
             it.inside = [inside[1], inside[0]];
         }
-        let mut pieces = std::mem::take(&mut it.pieces);
-        thin_out(&mut pieces);
-        let (size_m, rank) = self.size_and_rank(&pieces);
+        thin_out(pieces);
+        let (size_m, rank) = self.size_and_rank(&self.pieces[edge as usize]);
         let it = &mut self.edges[edge as usize];
-        (it.pieces, it.size_m, it.rank) = (pieces, size_m, rank);
+        (it.size_m, it.rank) = (size_m, rank);
         let ends = it.ends;
         ends.iter().for_each(|&node| self.measure_size(node));
         self.changed.push(edge);
@@ -306,7 +324,7 @@ impl<'a> Graph<'a> {
         let Some(edge) = self.find(from, draft.to) else {
             return Ok(None);
         };
-        let pieces = self.edges[edge as usize].pieces_from(from);
+        let pieces = self.pieces_from(edge, from);
         if self.measure.would_flatten(&draft.pieces, &pieces) {
             return Err(());
         }
@@ -323,6 +341,16 @@ impl<'a> Graph<'a> {
             return Err(());
         }
         Ok(Some(Fused { edge, inside }))
+    }
+
+    /// What an edge carries in the direction away from `node`.
+    pub(super) fn pieces_from(&self, edge: u32, node: u32) -> Pieces {
+        let pieces = &self.pieces[edge as usize];
+        if self.edges[edge as usize].ends[0] == node {
+            pieces.clone()
+        } else {
+            pieces.iter().map(turned).collect()
+        }
     }
 
     /// The edge between two nodes.
@@ -435,7 +463,7 @@ impl<'a> Graph<'a> {
         let it = &self.edges[edge as usize];
         Loose {
             ends: it.ends.map(|end| self.point(end)),
-            pieces: it.pieces.clone(),
+            pieces: self.pieces[edge as usize].clone(),
             inside: it.inside,
         }
     }
@@ -454,13 +482,14 @@ impl<'a> Graph<'a> {
     /// wall that carries nothing else goes.
     pub(super) fn arrangement(&self) -> Arrangement {
         let mut stretches = Vec::with_capacity(self.edges.len());
-        for edge in self.edges.iter().filter(|edge| edge.alive) {
+        for id in self.live() {
+            let edge = &self.edges[id as usize];
             let rim = i32::from(edge.inside[0]) - i32::from(edge.inside[1]);
             let stays = |piece: &&Piece| {
                 let vote = vote(self.measure.domain, piece);
                 vote == 0 || (rim != 0 && vote == rim)
             };
-            let pieces = edge.pieces.iter().filter(stays);
+            let pieces = self.pieces[id as usize].iter().filter(stays);
             stretches.extend(pieces.map(|&piece| (edge.ends, Some(piece))));
         }
         Arrangement::from_stretches(&self.at, stretches)

@@ -4,12 +4,13 @@ use crate::cleanup::cells::Cells;
 use crate::cleanup::cells::Grid;
 use crate::geometry::point::Point;
 use crate::geometry::window::Window;
+use smallvec::SmallVec;
 
 /// Edges by the square cells that they pass, nodes by the cell that they lie in. A segment occupies
 /// every cell that it touches (and now and then one beside it), so a query misses nothing. Queries
 /// and updates cost O(cells passed + what is there).
 pub(super) struct Index {
-    edges: Cells<Vec<Held>>,
+    edges: Cells<SmallVec<[Held; HELD]>>,
     /// Of a graph that is being changed: looking at one takes none.
     nodes: Option<Chains>,
 }
@@ -26,6 +27,9 @@ const NODES_A_BLOCK: usize = 2;
 /// Side of a cell, in lengths of an edge: with smaller ones a query looks into more cells than it
 /// saves edges. (Measured in instructions from .7 to 1.4.)
 const CELL: f64 = 1.4;
+
+/// Edges that lie in the cell itself, and need no second look elsewhere: most cells hold no more.
+const HELD: usize = 4;
 
 /// Cells of nodes are smaller: a node lies in one, however small it is, an edge in many.
 const NODE_CELL: f64 = 0.7;
@@ -146,13 +150,14 @@ impl Index {
         });
     }
 
-    /// Takes up all nodes, and from now on each one that is inserted.
-    pub(super) fn take_nodes(&mut self, at: &[Point]) {
+    /// Takes up these nodes, and from now on each one that is inserted.
+    pub(super) fn take_nodes(&mut self, nodes: impl ExactSizeIterator<Item = (u32, Point)>) {
+        let len = nodes.len();
         let mut chains = Chains {
-            heads: Cells::new(self.edges.grid.finer(NODE_CELL), at.len() / NODES_A_BLOCK),
-            links: Vec::with_capacity(at.len()),
+            heads: Cells::new(self.edges.grid.finer(NODE_CELL), len / NODES_A_BLOCK),
+            links: Vec::with_capacity(len),
         };
-        (0..).zip(at).for_each(|(node, &p)| chains.insert(node, p));
+        nodes.for_each(|(node, p)| chains.insert(node, p));
         self.nodes = Some(chains);
     }
 
@@ -198,9 +203,7 @@ impl Index {
         height: f64,
         is: impl FnMut(&Held) -> bool,
     ) -> bool {
-        let low = Point::new(a.x.min(b.x).min(c.x), a.y.min(b.y).min(c.y));
-        let high = Point::new(a.x.max(b.x).max(c.x), a.y.max(b.y).max(c.y));
-        self.any_in([low, high], a, b, height, is)
+        self.any_in(bounding_box([a, b, c]), a, b, height, is)
     }
 
     #[inline]
@@ -254,37 +257,48 @@ impl Index {
     }
 
     /// The nodes within `reach` of the segment `a b`, its ends included, and now and then one that
-    /// is a cell farther; sorted, each once. Nodes without edges too, if they were taken up.
-    pub(super) fn nodes_near(&self, a: Point, b: Point, reach: f64, found: &mut Vec<u32>) {
-        found.clear();
-        self.each_node_near(a, b, reach, |node| found.push(node));
-        found.sort_unstable();
-    }
-
-    /// The same, each once, in no order that means anything.
+    /// is a cell farther; each once, in no order that means anything.
     #[inline]
     pub(super) fn each_node_near(&self, a: Point, b: Point, reach: f64, mut tell: impl FnMut(u32)) {
-        self.any_node_near(a, b, reach, |node, _| {
-            tell(node);
+        self.any_node(a, b, reach, |node, p| {
+            if is_within(p, [a, b], reach) {
+                tell(node);
+            }
             false
         });
     }
 
-    /// True if one of them is what is looked for: told with where it is.
+    /// True if a node in the bounding box of the triangle is what is looked for: told where it is.
+    /// `height`: of the third corner above the first side.
     #[inline]
-    pub(super) fn any_node_near(
+    pub(super) fn any_node_at(
+        &self,
+        [a, b, c]: [Point; 3],
+        height: f64,
+        mut is: impl FnMut(Point) -> bool,
+    ) -> bool {
+        let [low, high] = bounding_box([a, b, c]);
+        self.any_node(a, b, height, |_, p| {
+            let is_in = (low.x <= p.x) & (p.x <= high.x) & (low.y <= p.y) & (p.y <= high.y);
+            is_in && is(p)
+        })
+    }
+
+    /// True if a node in the cells that are within `margin` of the segment `a b` is what is looked for.
+    #[inline]
+    fn any_node(
         &self,
         a: Point,
         b: Point,
-        reach: f64,
+        margin: f64,
         mut is: impl FnMut(u32, Point) -> bool,
     ) -> bool {
         let nodes = self.nodes.as_ref().expect("nodes were taken up");
-        nodes.heads.grid.passed(a, b, reach + 1.0, |cell| {
+        nodes.heads.grid.passed(a, b, margin + 1.0, |cell| {
             let mut next = *nodes.heads.get(cell);
             while next > 0 {
                 let (p, after) = nodes.links[next as usize - 1];
-                if is_within(p, [a, b], reach) && is(next - 1, p) {
+                if is(next - 1, p) {
                     return true;
                 }
                 next = after;
@@ -292,6 +306,14 @@ impl Index {
             false
         })
     }
+}
+
+/// Its lower and its upper corner.
+fn bounding_box([a, b, c]: [Point; 3]) -> [Point; 2] {
+    [
+        Point::new(a.x.min(b.x).min(c.x), a.y.min(b.y).min(c.y)),
+        Point::new(a.x.max(b.x).max(c.x), a.y.max(b.y).max(c.y)),
+    ]
 }
 
 /// True if `p` is within `reach`, and a cell for rounding, of the segment `a b`.

@@ -169,11 +169,11 @@ fn halves(
     *axis(&mut above.min) = at;
     let (mut lower, mut upper) = (Vec::with_capacity(half), Vec::with_capacity(half));
     for &edge in &district.edges {
-        let ends = ends(edge);
-        if ends.iter().any(|&p| p < at) {
+        let [p, q] = ends(edge);
+        if p.min(q) < at {
             lower.push(edge);
         }
-        if ends.iter().any(|&p| p >= at) {
+        if p.max(q) >= at {
             upper.push(edge);
         }
     }

@@ -164,7 +164,7 @@ fn sharp_angles(graph: &Graph) -> Vec<Finding> {
 
 /// The lines on some edges, each once.
 fn lines_of(graph: &Graph, edges: &[u32]) -> Vec<LineId> {
-    let pieces = (edges.iter()).flat_map(|&edge| &graph.edges[edge as usize].pieces);
+    let pieces = (edges.iter()).flat_map(|&edge| &graph.pieces[edge as usize]);
     let mut lines: Vec<LineId> = pieces.map(|piece| piece.line).collect();
     lines.sort_unstable();
     lines.dedup();

@@ -222,6 +222,17 @@ impl<'a> Measure<'a> {
 
     /// True if [`Measure::deviation_m`] is at most `share` of the line's tolerance.
     pub(super) fn fits(&self, piece: &Piece, a: Xy, b: Xy, share: f64) -> bool {
+        self.deviation_within_m(piece, a, b, share).is_some()
+    }
+
+    /// [`Measure::deviation_m`], if it is at most `share` of the line's tolerance.
+    pub(super) fn deviation_within_m(
+        &self,
+        piece: &Piece,
+        a: Xy,
+        b: Xy,
+        share: f64,
+    ) -> Option<f64> {
         let limit = share * self.tolerance_m(piece.line);
         let vertices = self.vertices_of(piece.line);
         let (from, to) = ((piece.from_m, a), (piece.to_m, b));
@@ -229,24 +240,24 @@ impl<'a> Measure<'a> {
             true => (from, to),
             false => (to, from),
         };
-        let is_near = |k: usize, (station_m, end): (f64, Xy)| {
-            let k = k.clamp(1, vertices.len() - 1);
-            distance(between(vertices[k - 1], vertices[k], station_m), end) <= limit
+        let near_m = |k: usize, (station_m, end): (f64, Xy)| {
+            let away_m = distance(point_before(vertices, k, station_m), end);
+            (away_m <= limit).then_some(away_m)
         };
         // one search, then along the line: this is asked most often of all
-        let mut k = vertices.partition_point(|it| it.station_m <= low.0);
-        if !is_near(k, low) {
-            return false;
-        }
+        let mut k = passed(vertices, low.0);
+        let mut most_m = near_m(k, low)?;
         while k < vertices.len() && vertices[k].station_m < high.0 {
-            if to_segment(vertices[k].at, a, b).0 > limit {
-                return false;
+            let away_m = to_segment(vertices[k].at, a, b).0;
+            if away_m > limit {
+                return None;
             }
+            most_m = most_m.max(away_m);
             k += 1;
         }
         // a vertex at the end belongs to it, as it does when its place is asked for
         k += usize::from(k < vertices.len() && vertices[k].station_m <= high.0);
-        is_near(k, high)
+        Some(most_m.max(near_m(k, high)?))
     }
 
     /// How much of a stretch is farther than [`NEAR`] of its tolerance from the edge `a b`, metres.

@@ -363,7 +363,7 @@ const FINAL_ROUNDS: usize = 2;
 
 /// All steps, in order.
 fn make_room(graph: &mut Graph) {
-    graph.index.take_nodes(&graph.at);
+    graph.take_nodes();
     simplify::simplify(graph, &FINE, &graph.nodes());
     let least = graph.measure.min_edge;
     for pass in [&GENTLE, &LAST] {

@@ -91,9 +91,13 @@ impl Nearby {
             let it = &graph.edges[edge as usize];
             let [p, q] = it.ends.map(|end| graph.point(end));
             let reach = self.reach * it.size_m / graph.measure.grid().cell_m;
-            (graph.index).nodes_near(p, q, reach, &mut self.found);
-            self.found
-                .retain(|&node| !it.ends.contains(&node) && graph.degree(node) > 0);
+            self.found.clear();
+            (graph.index).each_node_near(p, q, reach, |node| {
+                if !it.ends.contains(&node) {
+                    self.found.push(node);
+                }
+            });
+            self.found.sort_unstable();
             self.nodes.put(edge, &self.found);
         }
         self.nodes.get(edge)

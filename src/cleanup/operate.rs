@@ -28,29 +28,43 @@ pub(super) enum Bend {
     At(Point),
 }
 
+/// What became of a node that was to move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Shift {
+    Done,
+    /// Stretches would be too far away.
+    Unfit,
+    /// It may not lie there, whatever its stretches allow.
+    Blocked,
+}
+
 type Drafts = SmallVec<[Draft; 6]>;
 
 impl Graph<'_> {
     /// Moves node `v` to the free point `p`. `share`: of the tolerance.
     pub(super) fn shift(&mut self, v: u32, p: Point, share: f64) -> bool {
+        self.try_shift(v, p, share) == Shift::Done
+    }
+
+    /// The same, telling why not.
+    pub(super) fn try_shift(&mut self, v: u32, p: Point, share: f64) -> Shift {
         let measure = self.measure;
         self.shift_if(v, p, |piece, a, b| measure.fits(piece, a, b, share))
     }
 
     /// The same with a share above [`NEAR`] of it, if no more than `most_m` of its stretches comes farther away than
     /// that.
-    pub(super) fn shift_near(&mut self, v: u32, p: Point, share: f64, most_m: f64) -> bool {
+    pub(super) fn shift_near(&mut self, v: u32, p: Point, share: f64, most_m: f64) -> Shift {
         let measure = self.measure;
         let mut left_m = most_m + ROUNDING_M;
         self.shift_if(v, p, |piece, a, b| {
-            if measure.fits(piece, a, b, NEAR) {
-                return true;
-            }
-            let fits = measure.fits(piece, a, b, share);
-            if fits {
+            let Some(away_m) = measure.deviation_within_m(piece, a, b, share) else {
+                return false;
+            };
+            if away_m > NEAR * measure.tolerance_m(piece.line) {
                 left_m -= measure.parts_beyond_m(piece, a, b);
             }
-            fits && left_m >= 0.0
+            left_m >= 0.0
         })
     }
 
@@ -63,7 +77,7 @@ impl Graph<'_> {
     /// The same of an edge.
     pub(super) fn edge_beyond_m(&self, edge: u32) -> f64 {
         let (a, b) = self.ends_m(edge);
-        let pieces = self.edges[edge as usize].pieces.iter();
+        let pieces = self.pieces[edge as usize].iter();
         pieces.map(|piece| self.measure.beyond_m(piece, a, b)).sum()
     }
 
@@ -74,14 +88,15 @@ impl Graph<'_> {
         v: u32,
         p: Point,
         fits: impl FnMut(&Piece, Xy, Xy) -> bool,
-    ) -> bool {
+    ) -> Shift {
         if p == self.point(v) || !self.is_free(v) || !self.reaches(p) {
-            return false;
+            return Shift::Blocked;
         }
         let stations = self.restation_star(v, self.measure.metres(p));
-        if !self.star_fits(v, p, fits) || !self.star_is_clear(v, p, &self.neighbours(v), Some(p)) {
+        let fits = self.star_fits(v, p, fits);
+        if !fits || !self.star_is_clear(v, p, &self.neighbours(v), Some(p)) {
             self.set_stations(&stations);
-            return false;
+            return if fits { Shift::Blocked } else { Shift::Unfit };
         }
         let from = self.point(v);
         self.place(v, p);
@@ -94,7 +109,7 @@ impl Graph<'_> {
             from,
             stations,
         });
-        true
+        Shift::Done
     }
 
     /// True if all stretches at `v` fit when it is at `p`.
@@ -105,7 +120,8 @@ impl Graph<'_> {
             let [a, b] = it
                 .ends
                 .map(|end| if end == v { p } else { self.metres(end) });
-            it.pieces.iter().all(|piece| fits(piece, a, b))
+            let mut pieces = self.pieces[edge as usize].iter();
+            pieces.all(|piece| fits(piece, a, b))
         })
     }
 
@@ -153,7 +169,7 @@ impl Graph<'_> {
             self.remove(edge);
         }
         for (edge, k, piece) in absorbed.stretched {
-            self.edges[edge as usize].pieces[k] = piece;
+            self.pieces[edge as usize][k] = piece;
         }
         for (draft, fused) in drafts.into_iter().zip(fused) {
             self.add_or_fuse(w, draft, fused);
@@ -298,11 +314,11 @@ impl Graph<'_> {
     fn drafts(&self, v: u32) -> Drafts {
         let star = self.star[v as usize].iter();
         star.map(|&edge| {
-            let edge = &self.edges[edge as usize];
+            let it = &self.edges[edge as usize];
             Draft {
-                to: edge.other(v),
-                pieces: edge.pieces_from(v),
-                inside: edge.inside_from(v),
+                to: it.other(v),
+                pieces: self.pieces_from(edge, v),
+                inside: it.inside_from(v),
             }
         })
         .collect()

@@ -8,6 +8,7 @@ use crate::cleanup::measure::ROUNDING_M;
 use crate::cleanup::measure::distance;
 use crate::cleanup::measure::to_segment;
 use crate::cleanup::nearby::Nearby;
+use crate::cleanup::operate::Shift;
 use crate::cleanup::separate::gap_below_m;
 use crate::cleanup::separate::is_beside;
 use crate::cleanup::steps::Step;
@@ -25,7 +26,7 @@ pub(super) struct Wanted {
     /// once needed the second keeps to it.
     pub(super) shares: [f64; 2],
     /// How often each node is looked at, at most.
-    pub(super) rounds: usize,
+    pub(super) rounds: u8,
 }
 
 /// Share of the wanted push that is made at once: neighbours push too.
@@ -35,7 +36,7 @@ const STEP: f64 = 0.6;
 const STILL: f64 = 0.01;
 
 /// So many rounds go by before what is near is looked up again,
-const ROUNDS_A_LOOK: usize = 3;
+const ROUNDS_A_LOOK: u8 = 3;
 /// in which nodes seldom move by more than this, in mesh sizes. If one does, a push comes late.
 const DRIFT: f64 = 0.1;
 
@@ -51,7 +52,7 @@ pub(super) fn relax(graph: &mut Graph, wanted: &Wanted, nodes: &[u32]) {
     let mut active = nodes.to_vec();
     let mut first_share = vec![0_u8; graph.at.len()];
     // the first round in which a node is not yet known to be looked at
-    let mut asked = vec![0; graph.at.len()];
+    let mut asked = vec![0_u8; graph.at.len()];
     // where a node was last found near all its lines: as long as it is there, it still is
     let mut is_home: Vec<Option<Point>> = vec![None; graph.at.len()];
     let mut around = Vec::new();
@@ -106,7 +107,7 @@ fn homeward_m(graph: &Graph, node: u32) -> Option<Xy> {
     let (mut last, mut end_m, mut is_near) = (None, 0.0, true);
     for &edge in &graph.star[node as usize] {
         let it = &graph.edges[edge as usize];
-        for piece in &it.pieces {
+        for piece in &graph.pieces[edge as usize] {
             let (here, there) = match it.ends[0] == node {
                 true => (piece.from_m, piece.to_m),
                 false => (piece.to_m, piece.from_m),
@@ -157,6 +158,8 @@ const FAR_FOR_PUSH: f64 = 5.0;
 fn pushed(graph: &mut Graph, shares: &[f64], node: u32, push: Xy) -> Option<usize> {
     let at = graph.metres(node);
     let push_m = distance(push, [0.0; 2]);
+    // what is in the way of a step still is with more of the tolerance
+    let mut is_blocked = [false; 3];
     shares.iter().position(|&share| {
         // half of the tolerance is used freely
         let is_free = share <= NEAR;
@@ -164,13 +167,19 @@ fn pushed(graph: &mut Graph, shares: &[f64], node: u32, push: Xy) -> Option<usiz
             true => f64::INFINITY,
             false => graph.beyond_m(node).max(FAR_FOR_PUSH * push_m),
         };
-        [STEP, STEP / 2.0, STEP / 4.0].iter().any(|step| {
+        let steps = [STEP, STEP / 2.0, STEP / 4.0];
+        steps.iter().zip(&mut is_blocked).any(|(step, is_blocked)| {
+            if *is_blocked {
+                return false;
+            }
             let place = [at[0] + step * push[0], at[1] + step * push[1]];
             let p = graph.measure.on_grid(place);
-            match is_free {
-                true => graph.shift(node, p, share),
+            let shift = match is_free {
+                true => graph.try_shift(node, p, share),
                 false => graph.shift_near(node, p, share, most_m),
-            }
+            };
+            *is_blocked = shift == Shift::Blocked;
+            shift == Shift::Done
         })
     })
 }

@@ -178,8 +178,9 @@ fn push_beside(graph: &Graph, narrow: &Narrow, edge: u32, queue: &mut Queue) {
     let reach = reach / graph.measure.grid().cell_m;
     let [a, b] = it.ends.map(|node| graph.point(node));
     graph.index.each_node_near(a, b, reach, |node| {
-        let is_other = !it.ends.contains(&node) && graph.degree(node) > 0;
-        if is_other && let Some(ratio) = gap_ratio(graph, narrow, node, edge) {
+        if !it.ends.contains(&node)
+            && let Some(ratio) = gap_ratio(graph, narrow, node, edge)
+        {
             queue.push(graph, node, ratio);
         }
     });
@@ -276,7 +277,9 @@ pub(super) fn gap_below_m(graph: &Graph, node: u32, edge: u32, limit_m: f64) -> 
 /// True if `p` is in the bounding box of the segment `a b`, wider by `reach` on all sides.
 #[inline]
 pub(super) fn is_beside(p: Xy, a: Xy, b: Xy, reach: f64) -> bool {
-    (0..2).all(|k| a[k].min(b[k]) - reach <= p[k] && p[k] <= a[k].max(b[k]) + reach)
+    // one branch for all four
+    let is_between = |k: usize| (a[k].min(b[k]) - reach <= p[k]) & (p[k] <= a[k].max(b[k]) + reach);
+    is_between(0) & is_between(1)
 }
 
 /// Closes one conflict; returns the node in the middle of what changed.

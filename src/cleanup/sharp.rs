@@ -1,6 +1,8 @@
 //! Counts sharp angles, before and after.
 
+use crate::cleanup::measure::may_be_below;
 use crate::geometry::point::Point;
+use crate::geometry::point::Xy;
 use crate::noding::arrangement::Arrangement;
 use crate::noding::arrangement::grouped;
 
@@ -16,10 +18,20 @@ pub(super) fn sharp_angles(arrangement: &Arrangement, below_deg: f64) -> u64 {
     let halves: Vec<[u32; 2]> = both.collect();
     let order = grouped(&halves, points.len(), |half| half[0] as usize);
     let half = |it: u32| halves[it as usize];
+    // most nodes are on the way of a line, and need no arc tangent
+    let tangent = below_deg.to_radians().tan();
+    let is_surely_blunt = |star: &[u32]| {
+        let &[s, t] = star else {
+            return false;
+        };
+        let [hub, a] = half(s).map(|node| position(points[node as usize]));
+        let b = position(points[half(t)[1] as usize]);
+        !may_be_below(hub, a, b, tangent)
+    };
     let mut bearings_deg: Vec<f64> = Vec::new();
     let mut sharp = 0;
     for star in order.chunk_by(|&s, &t| half(s)[0] == half(t)[0]) {
-        if star.len() == 1 {
+        if star.len() == 1 || is_surely_blunt(star) {
             continue;
         }
         bearings_deg.clear();
@@ -42,9 +54,11 @@ pub(super) fn gaps_deg(bearings_deg: &mut [f64]) -> impl Iterator<Item = f64> {
 }
 
 fn bearing_deg(from: Point, to: Point) -> f64 {
-    let (dx, dy) = (
-        f64::from(to.x) - f64::from(from.x),
-        f64::from(to.y) - f64::from(from.y),
-    );
-    dy.atan2(dx).to_degrees()
+    let (from, to) = (position(from), position(to));
+    (to[1] - from[1]).atan2(to[0] - from[0]).to_degrees()
+}
+
+/// In cells.
+fn position(p: Point) -> Xy {
+    [f64::from(p.x), f64::from(p.y)]
 }

@@ -15,6 +15,7 @@ use crate::cleanup::measure::Measure;
 use crate::cleanup::measure::NEAR;
 use crate::cleanup::measure::ROUNDING_M;
 use crate::cleanup::measure::distance;
+use crate::cleanup::operate::Shift;
 use crate::cleanup::relax::along_rim;
 use crate::cleanup::sharp;
 use crate::domain::finding::Finding;
@@ -103,11 +104,11 @@ impl<'m> Shifts<'m> {
         let (lines, others): (Vec<u32>, Vec<u32>) =
             all.partition(|&edge| !arrangement.pieces_of(edge).is_empty());
         let mut graph = Graph::of(arrangement, &lines, measure);
-        for (edge, &id) in graph.edges.iter_mut().zip(&lines) {
+        for (pieces, &id) in graph.pieces.iter_mut().zip(&lines) {
             // all of them: the graph thins bundles out, and here they are written back
-            edge.pieces = arrangement.pieces_of(id).into();
+            *pieces = arrangement.pieces_of(id).into();
         }
-        graph.index.take_nodes(&graph.at);
+        graph.take_nodes();
         for &edge in &others {
             for node in arrangement.edges[edge as usize] {
                 graph.set_stand(node, Stand::Tied);
@@ -152,14 +153,15 @@ impl<'m> Shifts<'m> {
         let to = measure.on_grid([at[0] + by[0], at[1] + by[1]]);
         let mut limits_m = limits.each_m.iter();
         let mut left_m = limits.beyond_m + ROUNDING_M;
-        self.graph.shift_if(node, to, |piece, a, b| {
+        let shift = self.graph.shift_if(node, to, |piece, a, b| {
             let limit_m = limits_m.next().expect("one for each stretch");
             if measure.deviation_m(piece, a, b) > *limit_m {
                 return false;
             }
             left_m -= measure.beyond_m(piece, a, b);
             left_m >= 0.0
-        })
+        });
+        shift == Shift::Done
     }
 
     /// How far stretches at a node may usually be from their edges: half of their tolerance, or as far as they are.
@@ -177,7 +179,7 @@ impl<'m> Shifts<'m> {
         let star = graph.star[node as usize].iter();
         let limits_m = star.flat_map(|&edge| {
             let (a, b) = graph.ends_m(edge);
-            let pieces = graph.edges[edge as usize].pieces.iter();
+            let pieces = graph.pieces[edge as usize].iter();
             pieces.map(move |piece| {
                 let usual_m = share * measure.tolerance_m(piece.line);
                 usual_m.max(measure.deviation_m(piece, a, b))
@@ -196,9 +198,9 @@ impl<'m> Shifts<'m> {
 
     /// How much more of all lines may be, metres; negative if it is too much already.
     pub fn spare_m(&self) -> f64 {
-        let edges = self.graph.edges.iter();
+        let pieces = self.graph.pieces.iter().flatten();
         let length_m = |piece: &Piece| (piece.to_m - piece.from_m).abs();
-        let all_m: f64 = edges.flat_map(|edge| &edge.pieces).map(length_m).sum();
+        let all_m: f64 = pieces.map(length_m).sum();
         FAR_PART * all_m - self.all_beyond_m()
     }
 
@@ -209,15 +211,15 @@ impl<'m> Shifts<'m> {
 
     fn write(&self, arrangement: &mut Arrangement) {
         arrangement.points.clone_from(&self.graph.at);
-        for (edge, &id) in self.graph.edges.iter().zip(&self.edge) {
+        for (held, &id) in self.graph.pieces.iter().zip(&self.edge) {
             let [from, to] = [0, 1].map(|k| arrangement.piece_start[id as usize + k] as usize);
             let pieces = &mut arrangement.pieces[from..to];
             debug_assert_eq!(
                 pieces.len(),
-                edge.pieces.len(),
+                held.len(),
                 "stretches are neither lost nor made"
             );
-            pieces.copy_from_slice(&edge.pieces);
+            pieces.copy_from_slice(held);
             pieces.sort_by(|p, q| p.order(q));
         }
     }
@@ -237,14 +239,14 @@ pub fn check(
     let (was, is) = (Shifts::of(before, &measure), Shifts::of(after, &measure));
     let rounding_m = 2.0 * domain.grid.cell_m;
     let finest_m = (sizes.by_kind_m.iter().copied()).fold(sizes.default_m, f64::min);
-    let edges = was.graph.edges.iter().zip(&is.graph.edges);
-    for (id, (one, other)) in (0..).zip(edges) {
+    let pieces = was.graph.pieces.iter().zip(&is.graph.pieces);
+    for (id, (one, other)) in (0..).zip(pieces) {
         let ((a, b), (c, d)) = (was.graph.ends_m(id), is.graph.ends_m(id));
         let (old_m, new_m) = (distance(a, b), distance(c, d));
         if new_m < old_m.min(options.min_edge * finest_m) - rounding_m {
             return Err(format!("edge {id} is {new_m} m long, and was {old_m} m"));
         }
-        for (old, new) in one.pieces.iter().zip(&other.pieces) {
+        for (old, new) in one.iter().zip(other) {
             let usual_m = WIDE * measure.tolerance_m(new.line);
             let limit_m = usual_m.max(measure.deviation_m(old, a, b)) + rounding_m;
             let away_m = measure.deviation_m(new, c, d);

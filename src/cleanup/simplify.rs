@@ -126,10 +126,8 @@ fn deviation(graph: &Graph, smooth: &Smooth, node: u32) -> Option<f64> {
 /// second, a corner would go whose neighbours went before.
 fn turns(graph: &Graph, node: u32) -> bool {
     turn_deg(graph, node, |_| true).is_some_and(|turn| turn > graph.measure.corner_deg)
-        || (graph.edges[graph.star[node as usize][0] as usize]
-            .pieces_from(node)
-            .iter())
-        .any(|piece| graph.measure.is_corner(piece.line, piece.from_m))
+        || (graph.pieces_from(graph.star[node as usize][0], node).iter())
+            .any(|piece| graph.measure.is_corner(piece.line, piece.from_m))
 }
 
 /// True if an edge may stay as it is.

@@ -28,7 +28,7 @@ impl Graph<'_> {
     /// The pieces of `edge` on either side of the place nearest to `p`, both away from `p`.
     pub(super) fn split(&self, edge: u32, p: Xy) -> (Pieces, Pieces) {
         let mut halves = (Pieces::new(), Pieces::new());
-        for piece in &self.edges[edge as usize].pieces {
+        for piece in &self.pieces[edge as usize] {
             let (low, high) = (piece.from_m.min(piece.to_m), piece.from_m.max(piece.to_m));
             let station = self.measure.nearest(piece.line, low, high, p).0;
             let station = kept_inside(station, low, high);
@@ -51,7 +51,7 @@ impl Graph<'_> {
     /// move with it, or else to edges of `w`.
     pub(super) fn absorb(&self, edge: u32, v: u32, w: u32, drafts: &mut [Draft]) -> Absorbed {
         let mut absorbed = Absorbed::default();
-        for lost in self.edges[edge as usize].pieces_from(v) {
+        for lost in self.pieces_from(edge, v) {
             let mut moving = drafts.iter_mut().flat_map(|draft| draft.pieces.iter_mut());
             if let Some(piece) = moving.find(|piece| continues(piece, &lost)) {
                 piece.from_m = lost.to_m;
@@ -78,7 +78,7 @@ impl Graph<'_> {
             .filter(|&&edge| edge != contracted)
         {
             let starts_here = self.edges[edge as usize].ends[0] == w;
-            for (k, piece) in self.edges[edge as usize].pieces.iter().enumerate() {
+            for (k, piece) in self.pieces[edge as usize].iter().enumerate() {
                 let away = if starts_here { *piece } else { turned(piece) };
                 let taken = (absorbed.stretched.iter()).any(|&(e, i, _)| (e, i) == (edge, k));
                 if continues(&away, lost) && !taken {
@@ -125,7 +125,7 @@ impl Graph<'_> {
             }
         }
         if let Some((_, edge, piece)) = best {
-            self.edges[edge as usize].pieces.push(piece);
+            self.pieces[edge as usize].push(piece);
         }
         best.is_some()
     }
@@ -157,10 +157,10 @@ impl Graph<'_> {
         let star = self.star[v as usize].clone();
         let mut was = Stations::new();
         for (i, &e) in star.iter().enumerate() {
-            for k in 0..self.edges[e as usize].pieces.len() {
+            for k in 0..self.pieces[e as usize].len() {
                 let one = self.away(e, k, v);
                 let next = star[i + 1..].iter().find_map(|&f| {
-                    let all = 0..self.edges[f as usize].pieces.len();
+                    let all = 0..self.pieces[f as usize].len();
                     let mut all = all.map(|l| (f, l, self.away(f, l, v)));
                     all.find(|(.., it)| continues(it, &one))
                 });
@@ -179,18 +179,18 @@ impl Graph<'_> {
 
     /// A piece of an edge, away from `node`.
     fn away(&self, edge: u32, piece: usize, node: u32) -> Piece {
-        let it = &self.edges[edge as usize];
-        if it.ends[0] == node {
-            it.pieces[piece]
+        let it = &self.pieces[edge as usize][piece];
+        if self.edges[edge as usize].ends[0] == node {
+            *it
         } else {
-            turned(&it.pieces[piece])
+            turned(it)
         }
     }
 
     /// The first of several for one place holds: it was there first.
     pub(super) fn set_stations(&mut self, stations: &[(u32, u32, bool, f64)]) {
         for &(edge, piece, is_end, station_m) in stations.iter().rev() {
-            let piece = &mut self.edges[edge as usize].pieces[piece as usize];
+            let piece = &mut self.pieces[edge as usize][piece as usize];
             if is_end {
                 piece.to_m = station_m;
             } else {
@@ -221,9 +221,9 @@ impl Graph<'_> {
             self.edges[e as usize].other(v),
             self.edges[f as usize].other(v),
         );
-        let mut rest = self.edges[f as usize].pieces_from(v);
+        let mut rest = self.pieces_from(f, v);
         let mut joined = Pieces::new();
-        for piece in self.edges[e as usize].pieces_from(v) {
+        for piece in self.pieces_from(e, v) {
             let next = rest.iter().position(|it| continues(it, &piece));
             let to_m = next.map_or(piece.from_m, |k| rest.remove(k).to_m);
             joined.push(Piece {
@@ -241,8 +241,8 @@ impl Graph<'_> {
         let &[e, f] = self.star[v as usize].as_slice() else {
             return false;
         };
-        let from = self.edges[e as usize].pieces_from(v);
-        let mut rest = self.edges[f as usize].pieces_from(v);
+        let from = self.pieces_from(e, v);
+        let mut rest = self.pieces_from(f, v);
         from.len() == rest.len()
             && from.iter().all(|piece| {
                 let next = rest.iter().position(|it| continues(it, piece));
