@@ -30,7 +30,7 @@
 //! 5. Costs are those of [`Goals::cost`]: convex, relative, zero at the goal. `apportion` says what
 //!    one more interval costs on the edge of a curve that can best take it: the curve's weight.
 //!    So the odd interval that parity asks for goes to long edges, never to one below the size if
-//!    there is a way around it.
+//!    there is a way around it; nor, by `narrow`, to one along a narrow sub-domain.
 //!
 //! # Cost
 //! O(edges + half-curves), 24 bytes a curve.
@@ -51,6 +51,7 @@ mod blocks;
 pub mod check;
 pub mod goals;
 mod minima;
+mod narrow;
 mod rows;
 mod sides;
 mod submaps;
@@ -94,6 +95,7 @@ pub fn plan(
     for (id, curve) in partition.curves.iter().enumerate() {
         goals.weight[id] = weight(&goals, id, &wishes(curve));
     }
+    narrow::raise(&mut goals, sizes, partition);
     goals.blocks = blocks::blocks(&goals, arrangement, partition, options);
     goals
 }

@@ -136,6 +136,37 @@ fn small_squares_keep_one_on_each_side() {
     assert_eq!(goals.lower.iter().sum::<u32>(), 4);
 }
 
+/// Two lines across the square: halved, an edge of the strip between them makes quads that are small both
+/// ways if it is narrow; and so does a turn of a row there.
+#[test]
+fn along_a_narrow_strip_an_interval_is_dearer() {
+    let strip = |gap: i32| {
+        let lines = [50, 50 + gap].map(|y| vec![(0, y), (100, y)]);
+        let (partition, goals) = planned(&SQUARE, &lines, [10.0, 10.0]);
+        let mut areas = partition.subdomains.iter().map(|it| it.area_m2);
+        let strip = areas.position(|it| it == f64::from(100 * gap)).unwrap() as u32;
+        let least = |is_beside: bool| {
+            let curves = partition.curves.iter().zip(&goals.weight);
+            let of = curves.filter(|(it, _)| [it.left, it.right].contains(&strip) == is_beside);
+            of.map(|it| *it.1).fold(f64::INFINITY, f64::min)
+        };
+        let block = goals.blocks.iter().find(|it| it.subdomain == strip);
+        (
+            least(true),
+            least(false),
+            goals.block_weight(block.unwrap()),
+        )
+    };
+    let (narrow, wide) = (strip(3), strip(9));
+    assert_eq!((wide.0, wide.1, narrow.1), (1.0, 1.0, 1.0));
+    // .35 of a size beside 2 x 300 / 206 m
+    assert!((narrow.0 - 3.5 * 206.0 / 600.0).abs() < 1e-9, "{narrow:?}");
+    assert!(
+        narrow.2 > (5.0_f64 / 3.0).powf(1.5) * wide.2,
+        "{narrow:?} {wide:?}"
+    );
+}
+
 /// An L with a house and a free line: its sides are the directions, all of its curves are on one, and
 /// what goes east is as long as what goes west.
 #[test]
