@@ -164,3 +164,117 @@ fn meet(a: Point, b: Point, c: Point, d: Point) -> bool {
     };
     sides(a, b, c, d) <= 0 && sides(c, d, a, b) <= 0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cleanup::Measure;
+    use crate::cleanup::Options;
+    use crate::cleanup::SHORTEST;
+    use crate::cleanup::Tolerance;
+    use crate::cleanup::rules::Rule;
+    use crate::domain::line::Domain;
+    use crate::domain::line::Line;
+    use crate::domain::line::Role;
+    use crate::domain::size::SizeWish;
+    use crate::geometry::grid::Grid;
+    use crate::noding;
+    use proptest::prelude::*;
+
+    /// Lines of two points each in a square, on a grid of 1 m.
+    fn domain(lines: &[[i32; 4]]) -> Domain {
+        let line = |role: Role, points: Vec<Point>| Line {
+            source: 0,
+            role,
+            kind: 0,
+            name: String::new(),
+            points,
+        };
+        let ring = [(-1, -1), (13, -1), (13, 13), (-1, 13), (-1, -1)];
+        let ring = ring.map(|(x, y)| Point::new(x, y)).to_vec();
+        let mut all = vec![line(Role::Boundary, ring)];
+        all.extend(
+            lines
+                .iter()
+                .filter(|[x, y, u, v]| (x, y) != (u, v))
+                .map(|&[x, y, u, v]| {
+                    line(Role::Constraint, vec![Point::new(x, y), Point::new(u, v)])
+                }),
+        );
+        Domain {
+            grid: Grid {
+                origin_m: [0.0, 0.0],
+                cell_m: 1.0,
+            },
+            epsg: None,
+            kinds: vec![String::new()],
+            lines: all,
+            digest: 0,
+        }
+    }
+
+    /// No other node in a swept triangle, no edge that stays touched by a new one or by the way: all pairs.
+    fn slow(graph: &Graph, v: u32, p: Point) -> bool {
+        let q = graph.point(v);
+        let stays = |edge: &u32| !graph.edges[*edge as usize].ends.contains(&v);
+        let all = graph.live();
+        let others = graph.all_nodes().into_iter().filter(|&node| node != v);
+        let others: Vec<Point> = others.map(|node| graph.point(node)).collect();
+        let at = |edge: u32| {
+            graph.edges[edge as usize]
+                .ends
+                .map(|node| graph.point(node))
+        };
+        !others.contains(&p)
+            && graph.neighbours(v).iter().all(|&end| {
+                let end = graph.point(end);
+                let is_swept = |&it: &Point| it != end && in_triangle(it, [q, end, p]);
+                let is_touched = |edge: &u32| {
+                    let [s, t] = at(*edge);
+                    touches(p, end, s, t) || touches(q, p, s, t)
+                };
+                !on_segment(q, p, end)
+                    && !others.iter().any(is_swept)
+                    && !all.iter().filter(|edge| stays(edge)).any(is_touched)
+            })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+
+        #[test]
+        fn a_star_is_clear_as_all_pairs_tell(
+            lines in prop::collection::vec(prop::array::uniform4(0..13), 1..9),
+            by in [-4..5, -4..5],
+        ) {
+            let domain = domain(&lines);
+            let sizes = SizeWish {
+                default_m: 4.0,
+                by_kind_m: vec![4.0],
+                rows_by_kind: vec![1],
+            };
+            let options = Options {
+                tolerance: Tolerance::ShareOfSize(0.5),
+                by_kind: vec![Rule::FREE],
+                min_edge: SHORTEST,
+                left: None,
+                corner_deg: 30.0,
+                without: Vec::new(),
+            };
+            let noded = noding::node(&domain, &noding::Options { tile_cells: 1 << 20 });
+            let (arrangement, _) = noding::clip(&domain, noded);
+            let measure = Measure::new(&domain, &sizes, &options);
+            let mut graph = Graph::new(&arrangement, &measure);
+            graph.take_nodes();
+            for v in graph.all_nodes() {
+                let q = graph.point(v);
+                let p = Point::new(q.x + by[0], q.y + by[1]);
+                if p != q {
+                    let ends = graph.neighbours(v);
+                    let told = graph.star_is_clear(v, p, &ends, Some(p));
+                    prop_assert_eq!(told, slow(&graph, v, p), "{:?} to {:?}", q, p);
+                }
+            }
+        }
+    }
+}

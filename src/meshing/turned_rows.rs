@@ -317,3 +317,46 @@ impl Short {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The sum of squares about the mean, each visit moved by the steps of all edges before it.
+    fn slow(fit: &Fit, out: &[usize]) -> f64 {
+        let off: Vec<Xy> = (0..fit.off.len())
+            .map(|visit| {
+                let before = out.iter().filter(|&&edge| edge < visit);
+                before.fold(fit.off[visit], |off, &edge| {
+                    let step = fit.step(edge).map(f64::from);
+                    [off[0] + step[0], off[1] + step[1]]
+                })
+            })
+            .collect();
+        let n = off.len() as f64;
+        let mean = [0, 1].map(|k| off.iter().map(|it| it[k]).sum::<f64>() / n);
+        let square = |it: &Xy| (it[0] - mean[0]).powi(2) + (it[1] - mean[1]).powi(2);
+        off.iter().map(square).sum()
+    }
+
+    proptest! {
+        #[test]
+        fn sums_tell_what_moving_each_visit_would(
+            walk in prop::collection::vec((0_usize..4, -2.0..2.0, -2.0..2.0), 8..60),
+            out in prop::array::uniform4(0_usize..1000),
+        ) {
+            let n = walk.len();
+            let outer = Course::along(0, walk.iter().map(|it| it.0).collect());
+            let fit = Fit {
+                outer: &outer,
+                off: walk.iter().map(|it| [it.1, it.2]).collect(),
+            };
+            let [p, q, r, s] = out.map(|it| it % n);
+            prop_assume!(p != q);
+            let told = Sums::of(&fit, &[r, s]).without([p, q].map(|it| (it, fit.step(it))));
+            let slow = slow(&fit, &[r, s, p, q]);
+            prop_assert!((told - slow).abs() < 1e-9 * (1.0 + slow), "{} and {}", told, slow);
+        }
+    }
+}
