@@ -1,5 +1,6 @@
 //! Goals: what the sizes wish of each curve, before parity.
 
+use crate::intervals::WEIGHT_MAX;
 use crate::partition::subdomains::SubdomainId;
 
 /// One entry a curve. The count n of a curve must satisfy `lower <= n <= upper`; what it costs is
@@ -125,16 +126,18 @@ impl Goals {
 
     /// How much dearer a misfit of this block is than one between full-size edges: where one interval
     /// more makes a tiny edge, a turn of it through the block makes tiny quads. The square root of the
-    /// geometric mean of its curves' weights, and more if a side is wished below [`SHORT_SIDE`]. (Measured on eight cities, beside no weight: the 1 % quantile of
-    /// shapes grows by up to .005, irregular nodes fall by up to .5 points, tiny cells stay as they are.
-    /// The mean itself does twice that, but makes up to 2 % more quads, and tinier ones.)
+    /// geometric mean of its curves' weights, and more if a side is wished below [`SHORT_SIDE`]; at most
+    /// [`WEIGHT_MAX`]. (Measured on eight cities, beside no weight: the 1 % quantile of shapes grows by up to
+    /// .005, irregular nodes fall by up to .5 points, tiny cells stay as they are. The mean itself does twice
+    /// that, but makes up to 2 % more quads, and tinier ones.)
     pub fn block_weight(&self, block: &Block) -> f64 {
         let curves = || block.sides.iter().flatten();
         let logs = curves().map(|&curve| self.weight[curve as usize].ln());
         let mean = (0.5 * logs.sum::<f64>() / curves().count().max(1) as f64).exp();
         let wishes = block.totals(|curve| self.goal[curve]);
         let sides = wishes[..block.sides.len()].iter().copied();
-        mean * (SHORT_SIDE / sides.fold(SHORT_SIDE, f64::min)).powf(1.5)
+        let shortness = SHORT_SIDE / sides.fold(SHORT_SIDE, f64::min);
+        (mean * shortness.powf(1.5)).min(WEIGHT_MAX)
     }
 
     /// The cost without its weight.

@@ -167,6 +167,16 @@ fn along_a_narrow_strip_an_interval_is_dearer() {
     );
 }
 
+/// Two lines a metre apart at size 10 km: sums of weights in whole units have room for millions of blocks.
+#[test]
+fn no_strip_is_too_narrow_for_its_price() {
+    let lines = [50, 51].map(|y| vec![(0, y), (100, y)]);
+    let (_, goals) = planned(&SQUARE, &lines, [1e4, 1e4]);
+    let blocks = goals.blocks.iter().map(|it| goals.block_weight(it));
+    let all = blocks.chain(goals.weight.iter().copied());
+    assert_eq!(all.fold(0.0, f64::max), 1e3);
+}
+
 /// An L with a house and a free line: its sides are the directions, all of its curves are on one, and
 /// what goes east is as long as what goes west.
 #[test]
