@@ -30,12 +30,17 @@
 //! # Not here
 //! Counts (`parity`). Interior nodes (`meshing`). Grading along an edge: sizes are constant on it.
 
+use crate::domain::line::Domain;
 use crate::geometry::grid::Grid;
 use crate::geometry::point::Point;
 use crate::geometry::point::Xy;
+use crate::geometry::quad::distance;
 use crate::intervals::apportion;
 use crate::intervals::wish::EdgeWish;
+use crate::noding::arrangement::Arrangement;
+use crate::partition::subdomains::Curve;
 use crate::partition::subdomains::Partition;
+use crate::partition::subdomains::Subdomain;
 
 pub mod check;
 pub mod walks;
@@ -51,6 +56,21 @@ pub fn place(grid: &Grid, points: &[Point], edges: &[EdgeWish], count: u32) -> V
     }
     nodes.push(grid.local_m(points[points.len() - 1]));
     nodes
+}
+
+/// How wide each sub-domain is, metres: twice its area over its circumference, which is the width of a long strip.
+pub fn widths_m(domain: &Domain, arrangement: &Arrangement, partition: &Partition) -> Vec<f64> {
+    let length_m = |curve: &Curve| -> f64 {
+        let along = curve.nodes.windows(2);
+        let at = |node: u32| domain.grid.local_m(arrangement.points[node as usize]);
+        along.map(|ends| distance(at(ends[0]), at(ends[1]))).sum()
+    };
+    let lengths_m: Vec<f64> = partition.curves.iter().map(length_m).collect();
+    let width_m = |it: &Subdomain| {
+        let curves = it.walks.iter().flatten().map(|half| half >> 1);
+        2.0 * it.area_m2 / curves.map(|curve| lengths_m[curve as usize]).sum::<f64>()
+    };
+    partition.subdomains.iter().map(width_m).collect()
 }
 
 /// The point at `k / parts` of the edge from `a` to `b`; the grid's own point if it is one.

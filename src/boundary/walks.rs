@@ -29,6 +29,8 @@ pub struct Site<'a> {
     pub counts: &'a [u32],
     /// First global ids ([`numbering`](crate::boundary::numbering)).
     pub first: &'a [u64],
+    /// How wide each sub-domain is, metres ([`widths_m`](crate::boundary::widths_m)).
+    pub width_m: &'a [f64],
 }
 
 /// The walks of one sub-domain as nodes and closed index sequences, in the order of
@@ -43,6 +45,8 @@ pub struct Walks {
     pub walks: Vec<Vec<u32>>,
     /// For each walk, for each of its edges `walk[k] -> walk[k + 1]`: true on a lattice seam.
     pub on_seam: Vec<Vec<bool>>,
+    /// The same: how deep the quads on its other side are likely to be, metres, if that is a narrow sub-domain; else 0.
+    pub across_m: Vec<Vec<f64>>,
 }
 
 /// The walks of `subdomain`.
@@ -50,10 +54,11 @@ pub fn walks(site: &Site, subdomain: SubdomainId) -> Walks {
     let mut made = Walks::default();
     let mut local: FxHashMap<u64, u32> = FxHashMap::default();
     for walk in &site.partition.subdomains[subdomain as usize].walks {
-        let (mut nodes, mut on_seam) = (Vec::new(), Vec::new());
+        let (mut nodes, mut on_seam, mut across_m) = (Vec::new(), Vec::new(), Vec::new());
         for &half in walk {
             let (ids, at) = curve_nodes(site, half >> 1);
             let n = ids.len();
+            let depth_m = depth_across_m(site, half, subdomain);
             // The last node of a half-curve is the first of the next one.
             for step in 0..n - 1 {
                 let k = if half & 1 == 0 { step } else { n - 1 - step };
@@ -64,12 +69,29 @@ pub fn walks(site: &Site, subdomain: SubdomainId) -> Walks {
                 });
                 nodes.push(index);
                 on_seam.push(is_on_lattice(site, half >> 1));
+                across_m.push(depth_m);
             }
         }
         made.walks.push(nodes);
         made.on_seam.push(on_seam);
+        made.across_m.push(across_m);
     }
     made
+}
+
+/// Sub-domains wider than this, in sizes, have quads of any depth; narrower ones are strips, about as deep as one quad.
+const STRIP: f64 = 0.7;
+
+/// How deep the quads on the right of `half` are likely to be, metres; 0 if that cannot be said.
+fn depth_across_m(site: &Site, half: u32, subdomain: SubdomainId) -> f64 {
+    let curve = &site.partition.curves[(half >> 1) as usize];
+    let other = match half & 1 == 0 {
+        true => curve.right,
+        false => curve.left,
+    };
+    let width_m = site.width_m.get(other as usize).copied().unwrap_or(0.0);
+    let is_strip = other != subdomain && width_m <= STRIP * site.sizes.default_m;
+    if is_strip { width_m } else { 0.0 }
 }
 
 /// True on lattice seams and their ends. A rung touches no lattice point (or by chance, which does

@@ -241,6 +241,7 @@ fn outline(draft: &Draft, visits: &Visits, hole: &[u32]) -> Option<(Visits, Vec<
         walk_start,
         unique,
         on_seam,
+        across_m: Vec::new(),
     };
     Some((outline, names))
 }

@@ -39,8 +39,8 @@ pub(crate) struct Contest<'a> {
     enough: f64,
     /// The mean shape without which what is mapped does not.
     fair: f64,
-    /// Who leads.
-    pub best: Option<(Patch, Score)>,
+    /// Who leads, by its draft and its patch.
+    pub best: Option<(Draft, Patch, Score)>,
 }
 
 impl<'a> Contest<'a> {
@@ -85,19 +85,19 @@ impl<'a> Contest<'a> {
 
     /// Finishes a draft; if it ranks above who leads, it leads.
     fn enter(&mut self, draft: Draft, effort: Effort) {
-        let Some(patch) = finish(draft, self.visits, self.loops, effort) else {
+        let Some((draft, patch)) = finish(draft, self.visits, self.loops, effort) else {
             return;
         };
         let score = Score::of(&patch, self.visits, self.loops);
-        let leader = self.best.as_ref().map(|(_, score)| score.rank());
+        let leader = self.best.as_ref().map(|(_, _, score)| score.rank());
         if leader.is_none_or(|rank| score.rank() > rank) {
-            self.best = Some((patch, score));
+            self.best = Some((draft, patch, score));
         }
     }
 
     /// True if nobody else need try after `method`.
     fn is_over(&self, method: Method) -> bool {
-        let over = |(patch, score): &(Patch, Score)| match method {
+        let over = |(_, patch, score): &(Draft, Patch, Score)| match method {
             Method::Mapping => score.rank() >= self.enough && score.mean >= self.fair,
             _ => score.rank() >= self.enough || patch.quads.len() > LARGE_QUADS,
         };

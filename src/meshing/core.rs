@@ -447,6 +447,7 @@ mod tests {
             size_m: 1.0,
             lattice_origin: None,
             on_seam: vec![vec![false; 14]],
+            across_m: Vec::new(),
         })
     }
 

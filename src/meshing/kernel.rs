@@ -35,6 +35,8 @@ pub(crate) struct Kernel {
     pub spoke: Vec<u32>,
     /// 1 / (wished edge length)^2 around each node, 1 / m2; set by `smooth::wish`.
     pub scale: Vec<f64>,
+    /// On the outline: how deep the quads across its side that starts here are likely to be, metres; 0 if unknown.
+    pub across_m: Vec<f64>,
     /// How far from its best place each node may be, wished lengths: what it, or a neighbour since,
     /// moved by last; infinite if its surroundings are new.
     pub unrest: Vec<f32>,
@@ -76,6 +78,7 @@ impl Kernel {
             spoke: Vec::new(),
             scale: Vec::new(),
             unrest: Vec::new(),
+            across_m: Vec::new(),
             quads: Vec::with_capacity(zone.len()),
             twins: vec![[NONE; 4]; zone.len()],
             vacant: Vec::new(),
@@ -91,6 +94,7 @@ impl Kernel {
         }
         kernel.find_twins(visits);
         kernel.find_spokes();
+        kernel.look_across(visits);
         kernel
     }
 
@@ -104,6 +108,7 @@ impl Kernel {
         self.spoke.push(NONE);
         self.scale.push(1.0);
         self.unrest.push(f32::INFINITY);
+        self.across_m.push(0.0);
         self.nodes.len() as u32 - 1
     }
 
@@ -118,6 +123,7 @@ impl Kernel {
         self.spoke.pop();
         self.scale.pop();
         self.unrest.pop();
+        self.across_m.pop();
     }
 
     /// Puts the quads and positions back into the draft.
@@ -180,6 +186,19 @@ impl Kernel {
                 node = self.add_node(self.nodes[node as usize], self.origin[node as usize]);
             }
             self.claim_sector(side, node);
+        }
+    }
+
+    fn look_across(&mut self, visits: &Visits) {
+        for side in 0..4 * self.quads.len() as u32 {
+            let (from, to) = (self.start(side), self.end(side));
+            let [visit, next] = [from, to].map(|node| self.origin[node as usize]);
+            if self.twin(side) == NONE
+                && let Some(&across_m) = visits.across_m.get(visit as usize)
+                && visits.next(visit) == next
+            {
+                self.across_m[from as usize] = across_m;
+            }
         }
     }
 
@@ -405,6 +424,7 @@ pub(crate) fn grid(columns: usize, rows: usize) -> Kernel {
         walk_start: vec![0, around as u32],
         unique: (0..around as u32).collect(),
         on_seam: vec![false; around],
+        across_m: Vec::new(),
     };
     let draft = Draft {
         quads: quads.collect(),
@@ -414,4 +434,17 @@ pub(crate) fn grid(columns: usize, rows: usize) -> Kernel {
         method: crate::meshing::patch::Method::Strip,
     };
     Kernel::of(&draft, &visits)
+}
+
+/// A grid whose inner nodes have moved by up to `by` of a cell.
+#[cfg(test)]
+pub(crate) fn shaken(moves: &[[f64; 2]], by: f64) -> Kernel {
+    let mut kernel = grid(5, 4);
+    crate::meshing::smooth::wish(&mut kernel, 1.0);
+    let inner = (0..kernel.nodes.len()).filter(|&node| !kernel.held[node]);
+    for (node, [x, y]) in inner.collect::<Vec<_>>().into_iter().zip(moves) {
+        let at = kernel.nodes[node];
+        kernel.nodes[node] = [at[0] + by * x, at[1] + by * y];
+    }
+    kernel
 }

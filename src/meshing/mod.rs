@@ -73,9 +73,11 @@ mod kernel;
 mod last_resort;
 mod lattice;
 mod lattice_cells;
+mod level;
 mod lift;
 mod looping;
 mod mapping;
+mod mend;
 mod pair;
 mod pairing;
 pub mod patch;
@@ -106,6 +108,7 @@ use crate::meshing::course::courses;
 use crate::meshing::draft::Draft;
 use crate::meshing::finish::Effort;
 use crate::meshing::finish::finish;
+use crate::meshing::finish::polish;
 use crate::meshing::join::Join;
 use crate::meshing::patch::Loops;
 use crate::meshing::patch::Method;
@@ -124,6 +127,8 @@ pub struct Options {
     /// A patch ends the competition if its [`Score::rank`] reaches this; in sub-domains of more
     /// than 100 quads less is enough (see `contest`).
     pub good_enough: f64,
+    /// Shapes of the winner are lifted and its areas levelled, which moves nodes only.
+    pub polish: bool,
 }
 
 impl Options {
@@ -137,6 +142,15 @@ impl Options {
                 Method::Indirect,
             ],
             good_enough: 0.85,
+            polish: true,
+        }
+    }
+
+    /// The same, but the winner is left as it is: what is to be seen is which one it is, and where it is poor.
+    pub fn trial() -> Options {
+        Options {
+            polish: false,
+            ..Options::all()
         }
     }
 }
@@ -160,7 +174,8 @@ pub fn mesh(loops: &Loops, options: &Options) -> Result<Meshed, Defect> {
         draft(method, &visits, loops)
     });
     let (patch, score) = match contest.best {
-        Some(best) => best,
+        Some(best) if options.polish => polish(best, &visits, loops),
+        Some((_, patch, score)) => (patch, score),
         None => {
             let patch = last_resort(&visits, loops)?;
             let score = Score::of(&patch, &visits, loops);
@@ -213,13 +228,14 @@ fn last_resort(visits: &Visits, loops: &Loops) -> Result<Patch, Defect> {
             break;
         };
         let draft = last_resort::mesh(&pairing::join(&triangles, visits.len()));
-        if let Some(patch) = finish(draft, visits, loops, effort) {
+        if let Some((_, patch)) = finish(draft, visits, loops, effort) {
             return Ok(patch);
         }
     }
     let along_tree = triangulate(visits, &[])
         .map(|triangles| last_resort::mesh(&Join::along_tree(&triangles)))
-        .and_then(|draft| finish(draft, visits, loops, Effort::Check));
+        .and_then(|draft| finish(draft, visits, loops, Effort::Check))
+        .map(|it| it.1);
     along_tree.ok_or_else(|| Defect {
         what: "the walks are not planar, or too thin for f64".into(),
         at_m: loops.nodes.first().copied().unwrap_or([0.0; 2]),

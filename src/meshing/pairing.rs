@@ -306,6 +306,7 @@ mod tests {
             size_m: 1.0,
             lattice_origin: None,
             on_seam: vec![vec![false; count]],
+            across_m: Vec::new(),
         };
         triangulate(&Visits::of(&loops), &inner).expect("a square is planar")
     }

@@ -22,6 +22,9 @@ pub struct Loops {
     pub lattice_origin: Option<Xy>,
     /// For each walk, for each of its edges `walk[k] -> walk[k + 1]`: true if it lies on a seam.
     pub on_seam: Vec<Vec<bool>>,
+    /// For each walk, for each of its edges: how deep the quads across it are likely to be, metres; 0 if that is
+    /// unknown or there are none. May be empty.
+    pub across_m: Vec<Vec<f64>>,
 }
 
 impl Loops {
@@ -34,6 +37,7 @@ impl Loops {
             size_m,
             lattice_origin: is_part.then_some([0.0, 0.0]),
             on_seam: walked.on_seam.clone(),
+            across_m: walked.across_m.clone(),
         }
     }
 }

@@ -43,6 +43,7 @@ pub(crate) fn chain(visits: &Visits, next: &[u32], core: &CoreQuads) -> Option<S
             walk_start: vec![0],
             unique: Vec::with_capacity(edges.len()),
             on_seam: Vec::with_capacity(edges.len()),
+            across_m: Vec::new(),
         },
         node: Vec::with_capacity(edges.len()),
         on_walk: Vec::with_capacity(edges.len()),

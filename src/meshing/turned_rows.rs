@@ -311,6 +311,7 @@ impl Short {
                 walk_start: std::iter::once(0).chain(starts).collect(),
                 unique: (0..kept.len() as u32).collect(),
                 on_seam: vec![false; kept.len()],
+                across_m: Vec::new(),
             },
             walks: shorter,
             first: kept.iter().map(|&visit| visit as u32).collect(),

@@ -21,6 +21,8 @@ pub(crate) struct Visits {
     pub unique: Vec<u32>,
     /// True if the edge from this visit to the next lies on a seam.
     pub on_seam: Vec<bool>,
+    /// How deep the quads across the edge from this visit to the next are likely to be, metres; 0 if unknown.
+    pub across_m: Vec<f64>,
 }
 
 impl Visits {
@@ -31,12 +33,14 @@ impl Visits {
             walk_start: vec![0],
             unique: Vec::new(),
             on_seam: Vec::new(),
+            across_m: loops.across_m.concat(),
         };
         for (walk, seam) in loops.walks.iter().zip(&loops.on_seam) {
             visits.unique.extend(walk);
             visits.on_seam.extend(seam);
             visits.walk_start.push(visits.unique.len() as u32);
         }
+        visits.across_m.resize(visits.unique.len(), 0.0);
         let place = |&node: &u32| loops.nodes[node as usize];
         visits.nodes = visits.unique.iter().map(place).collect();
         visits

@@ -49,6 +49,8 @@ pub struct Plan {
     pub city: Parked,
     /// First global ids of nodes on curves.
     pub first: Vec<u64>,
+    /// How wide each sub-domain is, metres.
+    pub width_m: Vec<f64>,
     /// Set while nodes may still move to better places.
     pub unsettled: Option<Unsettled>,
 }
@@ -63,6 +65,7 @@ impl Plan {
             partition: &self.city.partition,
             counts: &self.city.balance.counts,
             first: &self.first,
+            width_m: &self.width_m,
         }
     }
 
@@ -70,7 +73,7 @@ impl Plan {
     /// findings.
     pub fn shed(&mut self) {
         self.domain.lines = Vec::new();
-        self.first = Vec::new();
+        (self.first, self.width_m) = (Vec::new(), Vec::new());
         self.city.arrangement = Arrangement::default();
         self.city.goals = Goals::default();
         (self.city.balance.counts, self.city.balance.cuts) = (Vec::new(), Cuts::default());
@@ -126,6 +129,7 @@ pub(super) fn plan(
     let points = city.arrangement.points.len();
     let first = boundary::numbering(&city.partition, &city.balance.counts, points);
     let nodes = first[first.len() - 1];
+    let width_m = boundary::widths_m(&domain, &city.arrangement, &city.partition);
     if nodes >= u64::from(u32::MAX) {
         return Err(Error::Job(format!(
             "{nodes} nodes on lines do not fit 32 bits: choose a larger size or split the domain"
@@ -137,6 +141,7 @@ pub(super) fn plan(
         cleaning,
         city,
         first,
+        width_m,
         unsettled,
     })
 }

@@ -82,7 +82,7 @@ impl Trial {
 pub fn trial(site: &Site, subdomain: SubdomainId) -> Trial {
     let walked = walks(site, subdomain);
     let loops = Loops::of(&walked, site.sizes.default_m);
-    match meshing::mesh(&loops, &meshing::Options::all()) {
+    match meshing::mesh(&loops, &meshing::Options::trial()) {
         Ok(meshed) => kept(&walked, site.arrangement.points.len() as u64, &meshed.patch),
         // our mistake, but nothing is lost: the mesh itself will say where
         Err(_) => Trial::default(),
@@ -155,6 +155,7 @@ mod tests {
             ids: vec![3, 10, 11, 12, 0, 1, 13, 14, 15, 2],
             walks: vec![vec![6, 7, 8, 9, 0, 1, 2, 3, 4, 5]],
             on_seam: vec![vec![false; 10]],
+            across_m: Vec::new(),
             nodes: nodes.clone(),
         };
         let patch = Patch {

@@ -143,6 +143,7 @@ proptest! {
         parity::check::check(&partition, &goals, &balance).unwrap();
         let counts = &balance.counts;
         let first = boundary::numbering(&partition, counts, arrangement.points.len());
+        let width_m = boundary::widths_m(&domain, &arrangement, &partition);
         let site = Site {
             domain: &domain,
             sizes: &sizes,
@@ -150,6 +151,7 @@ proptest! {
             partition: &partition,
             counts,
             first: &first,
+            width_m: &width_m,
         };
         for id in 0..partition.subdomains.len() as u32 {
             let made = walks(&site, id);

@@ -32,6 +32,7 @@ fn verify(name: &str, loops: &Loops, methods: &[Method]) -> Meshed {
     let options = Options {
         methods: methods.to_vec(),
         good_enough: 0.95,
+        polish: true,
     };
     let meshed = mesh(loops, &options).unwrap_or_else(|defect| panic!("{name}: {defect:?}"));
     if let Err(defect) = check(loops, &meshed.patch) {

@@ -114,6 +114,7 @@ impl Draw {
             size_m,
             lattice_origin: None,
             on_seam,
+            across_m: Vec::new(),
         }
     }
 

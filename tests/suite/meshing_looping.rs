@@ -15,6 +15,7 @@ fn by(method: Method, name: &str, loops: &Loops) -> Meshed {
     let options = Options {
         methods: vec![method],
         good_enough: 2.0,
+        polish: true,
     };
     let meshed = mesh(loops, &options).unwrap_or_else(|defect| panic!("{name}: {defect:?}"));
     if let Err(defect) = check(loops, &meshed.patch) {
@@ -36,6 +37,7 @@ fn polygon(corners: &[Xy], counts: &[usize], size_m: f64) -> Loops {
     Loops {
         walks: vec![(0..nodes.len() as u32).collect()],
         on_seam: vec![vec![false; nodes.len()]],
+        across_m: Vec::new(),
         nodes,
         size_m,
         lattice_origin: None,

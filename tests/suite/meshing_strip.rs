@@ -71,6 +71,7 @@ fn loops_of(walks: Vec<Vec<Xy>>, size_m: f64) -> Loops {
         size_m,
         lattice_origin: None,
         on_seam,
+        across_m: Vec::new(),
     }
 }
 
@@ -253,6 +254,7 @@ fn strip(name: &str, loops: &Loops) -> Meshed {
     let options = Options {
         methods: vec![Method::Strip],
         good_enough: 2.0,
+        polish: true,
     };
     let meshed = mesh(loops, &options).unwrap_or_else(|defect| panic!("{name}: {defect:?}"));
     if let Err(defect) = check(loops, &meshed.patch) {

@@ -46,6 +46,7 @@ fn round(domain: &Domain, cleaned: &Cleaned, size_m: f64) -> Option<(Arrangement
         .ok()?
         .counts;
     let first = boundary::numbering(&partition, &counts, before.points.len());
+    let width_m = boundary::widths_m(domain, before, &partition);
     let site = Site {
         domain,
         sizes: &sizes,
@@ -53,6 +54,7 @@ fn round(domain: &Domain, cleaned: &Cleaned, size_m: f64) -> Option<(Arrangement
         partition: &partition,
         counts: &counts,
         first: &first,
+        width_m: &width_m,
     };
     let all = 0..partition.subdomains.len() as u32;
     let mut trials: Vec<_> = all.map(|subdomain| trial(&site, subdomain)).collect();
