@@ -22,7 +22,8 @@
 //!    relative deviation that `intervals` uses for curves) is least. Convex and separable, so
 //!    giving one interval at a time to the edge with the least marginal cost is optimal.
 //! 2. `place`: equal spacing on each edge.
-//! 3. `walks`: the walks of one sub-domain, from its curves.
+//! 3. `walks`: the walks of one sub-domain, from its curves; and, by [`widths_m`], how deep the quads across narrow
+//!    sub-domains are likely to be.
 //!
 //! # Cost
 //! O(count log edges) a curve; a curve is placed twice, once for each neighbour, and never stored.
