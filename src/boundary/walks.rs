@@ -29,7 +29,7 @@ pub struct Site<'a> {
     pub counts: &'a [u32],
     /// First global ids ([`numbering`](crate::boundary::numbering)).
     pub first: &'a [u64],
-    /// How wide each sub-domain is, metres ([`widths_m`](crate::boundary::widths_m)).
+    /// How wide each sub-domain is, metres ([`widths_m`](crate::boundary::widths_m)); may be empty: unknown.
     pub width_m: &'a [f64],
 }
 

@@ -67,13 +67,15 @@ pub(crate) fn finish(
 }
 
 /// The last pass over the patch that has won: lifts nearly all quads, and levels areas with those across the outline
-/// too. Connections stay. (It comes after the contest since it serves no choice, and costs an eighth to a fifth of all processor time.)
+/// too. Connections stay. (It comes after the contest since it serves no choice, and costs an eighth to a fifth of all
+/// processor time.)
 pub(crate) fn polish(
     (mut draft, patch, score): (Draft, Patch, Score),
     visits: &Visits,
     loops: &Loops,
 ) -> (Patch, Score) {
     let mut kernel = Kernel::of(&draft, visits);
+    kernel.look_across(visits);
     wish(&mut kernel, loops.size_m);
     lift_last(&mut kernel, loops.size_m);
     level_across(&mut kernel, loops.size_m);

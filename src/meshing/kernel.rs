@@ -35,7 +35,8 @@ pub(crate) struct Kernel {
     pub spoke: Vec<u32>,
     /// 1 / (wished edge length)^2 around each node, 1 / m2; set by `smooth::wish`.
     pub scale: Vec<f64>,
-    /// On the outline: how deep the quads across its side that starts here are likely to be, metres; 0 if unknown.
+    /// On the outline: how deep the quads across its side that starts here are likely to be, metres; 0 if unknown. Set
+    /// by [`look_across`](Kernel::look_across).
     pub across_m: Vec<f64>,
     /// How far from its best place each node may be, wished lengths: what it, or a neighbour since,
     /// moved by last; infinite if its surroundings are new.
@@ -94,7 +95,6 @@ impl Kernel {
         }
         kernel.find_twins(visits);
         kernel.find_spokes();
-        kernel.look_across(visits);
         kernel
     }
 
@@ -189,7 +189,8 @@ impl Kernel {
         }
     }
 
-    fn look_across(&mut self, visits: &Visits) {
+    /// Fills in [`across_m`](Kernel::across_m); without it nothing is known.
+    pub fn look_across(&mut self, visits: &Visits) {
         for side in 0..4 * self.quads.len() as u32 {
             let (from, to) = (self.start(side), self.end(side));
             let [visit, next] = [from, to].map(|node| self.origin[node as usize]);

@@ -150,7 +150,7 @@ mod tests {
         assert!(least(&even) >= EVEN, "{even:?}");
     }
 
-    /// Quads of the size beside a strip of a third of it: the first row becomes narrower.
+    /// Quads of the size beside a strip of .45 of it: the first row becomes narrower.
     #[test]
     fn a_row_is_levelled_with_a_strip_across_the_line() {
         let mut kernel = grid(6, 6);

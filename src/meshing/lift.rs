@@ -24,7 +24,7 @@ const LIFTED: f64 = 0.75;
 /// takes longer, and the mean ratio of neighbouring areas of one city grows from 1.087 to 1.108, not to 1.098.)
 const LIFTED_LAST: f64 = 0.92;
 
-/// There no quad comes below this evenness, or its own where that is less. (Measured on two cities, lifting up to .97:
+/// There no quad comes below this evenness, or below the least one around the node that moves where that is less. (Measured on two cities, lifting up to .97:
 /// with no limit the 99 % quantile of the ratio of neighbouring areas grows from 1.41 to 1.64 and from 1.99 to 2.10, with
 /// this one to 1.55 and 1.99.)
 const EVEN_LAST: f64 = 0.6;

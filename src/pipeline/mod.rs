@@ -92,6 +92,7 @@ fn build_here(job: &Job, listener: Listener) -> Result<Outcome, Error> {
     let partial = chunk::writer::partial_of(&job.output);
     let mut plan = plan::plan(job, &watch, job.resume.then_some(partial.as_path()))?;
     settle::settle(job, &mut plan, &watch)?;
+    plan.look_across();
     let writer = begin(job, &plan, &partial)?;
     watch.stage("frame", 1, |_| -> Result<_, Error> {
         let frame = frame::frame(&plan);

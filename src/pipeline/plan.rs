@@ -49,7 +49,7 @@ pub struct Plan {
     pub city: Parked,
     /// First global ids of nodes on curves.
     pub first: Vec<u64>,
-    /// How wide each sub-domain is, metres.
+    /// How wide each sub-domain is, metres; empty until nodes have their places ([`Plan::look_across`]).
     pub width_m: Vec<f64>,
     /// Set while nodes may still move to better places.
     pub unsettled: Option<Unsettled>,
@@ -67,6 +67,12 @@ impl Plan {
             first: &self.first,
             width_m: &self.width_m,
         }
+    }
+
+    /// Measures how wide sub-domains are, for those beside them. Trial meshes do without.
+    pub fn look_across(&mut self) {
+        let city = &self.city;
+        self.width_m = boundary::widths_m(&self.domain, &city.arrangement, &city.partition);
     }
 
     /// Frees what only meshing and writing need. What is told of the build stays: counts, figures,
@@ -129,7 +135,6 @@ pub(super) fn plan(
     let points = city.arrangement.points.len();
     let first = boundary::numbering(&city.partition, &city.balance.counts, points);
     let nodes = first[first.len() - 1];
-    let width_m = boundary::widths_m(&domain, &city.arrangement, &city.partition);
     if nodes >= u64::from(u32::MAX) {
         return Err(Error::Job(format!(
             "{nodes} nodes on lines do not fit 32 bits: choose a larger size or split the domain"
@@ -141,7 +146,7 @@ pub(super) fn plan(
         cleaning,
         city,
         first,
-        width_m,
+        width_m: Vec::new(),
         unsettled,
     })
 }

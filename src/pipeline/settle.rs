@@ -1,6 +1,5 @@
 //! Trial meshes on all cores, and the nodes that move for them: the end of phase B.
 
-use crate::boundary;
 use crate::cleanup;
 use crate::domain::finding::Finding;
 use crate::partition;
@@ -97,6 +96,5 @@ fn settle_once(plan: &mut Plan, trials: &mut [Trial]) -> Settled {
         trials,
     );
     partition::remeasure(&plan.domain, &city.arrangement, &mut city.partition);
-    plan.width_m = boundary::widths_m(&plan.domain, &city.arrangement, &city.partition);
     settled
 }

@@ -67,6 +67,52 @@ fn every_point_of_a_chain_is_a_node() {
     assert_eq!(nodes.len(), 10);
 }
 
+/// Two lines across a square of 100 m, 3 m apart, at 10 m: both fields beside the strip know how deep it is, which
+/// knows nothing of them.
+#[test]
+fn a_walk_knows_how_narrow_a_strip_across_is() {
+    let square = [(0, 0), (100, 0), (100, 100), (0, 100), (0, 0)];
+    let lines = [50, 53].map(|y| vec![(0, y), (100, y)]);
+    let (domain, arrangement, partition) = walked(&square, &lines);
+    let width_m = boundary::widths_m(&domain, &arrangement, &partition);
+    let depth_m = 600.0 / 206.0;
+    let counts: Vec<u32> = partition
+        .curves
+        .iter()
+        .map(|it| it.edges.len() as u32)
+        .collect();
+    let first = boundary::numbering(&partition, &counts, arrangement.points.len());
+    let sizes = SizeWish::uniform(10.0, 2);
+    let across = |width_m: &[f64], subdomain: usize| {
+        let site = Site {
+            domain: &domain,
+            sizes: &sizes,
+            arrangement: &arrangement,
+            partition: &partition,
+            counts: &counts,
+            first: &first,
+            width_m,
+        };
+        walks(&site, subdomain as u32).across_m.concat()
+    };
+    for (id, subdomain) in partition.subdomains.iter().enumerate() {
+        let known: Vec<f64> = (across(&width_m, id).into_iter())
+            .filter(|&it| it > 0.0)
+            .collect();
+        match subdomain.area_m2 == 300.0 {
+            true => assert!(known.is_empty(), "{known:?}"),
+            false => assert!(
+                known.len() == 1 && (known[0] - depth_m).abs() < 1e-9,
+                "{known:?}"
+            ),
+        }
+        assert!(
+            across(&[], id).iter().all(|&it| it == 0.0),
+            "nothing is known"
+        );
+    }
+}
+
 #[test]
 fn lattice_seams_have_lattice_nodes() {
     let points = [
