@@ -3,14 +3,16 @@
 //! A patch knows what lies across its outline only by how wide the sub-domain there is (`boundary::widths_m`): beside
 //! a strip of two fifths of the size a first row of full depth is twice and a half too large.
 
+use crate::geometry::point::Xy;
 use crate::geometry::quad::area;
 use crate::geometry::quad::distance;
 use crate::meshing::kernel::Few;
 use crate::meshing::kernel::Kernel;
 use crate::meshing::kernel::quad_of;
-use crate::meshing::lift::worth;
 use crate::meshing::mend::compass;
 use crate::meshing::mend::mend;
+use crate::meshing::ring::Beside;
+use crate::meshing::ring::Ring;
 use crate::meshing::triangulate::NONE;
 
 /// Below this evenness a quad is levelled with its neighbours.
@@ -42,23 +44,26 @@ pub(crate) fn evenness(kernel: &Kernel, quad: u32) -> f64 {
 
 /// The same, with what lies across the outline as deep as it is likely to be.
 pub(crate) fn evenness_across(kernel: &Kernel, quad: u32) -> f64 {
-    let corners = kernel.corners(quad);
-    let own = area(&corners);
+    let own = area(&kernel.corners(quad));
     let outer = (0..4).filter(|&k| kernel.twins[quad as usize][k] == NONE);
-    let areas = outer.map(|k| {
-        let across_m = kernel.across_m[kernel.quads[quad as usize][k] as usize];
-        across_m * distance(corners[k], corners[(k + 1) % 4])
-    });
-    let known = areas.filter(|&other| other > 0.0);
+    let known = outer.filter_map(|k| across_m2(kernel, quad, k));
     let ratios = known.map(|other| (own / other).min(other / own));
     ratios.fold(evenness(kernel, quad), f64::min)
+}
+
+/// The likely area of what lies across side `k` of a quad, which is on the outline, m2; none if nothing is known.
+pub(crate) fn across_m2(kernel: &Kernel, quad: u32, k: usize) -> Option<f64> {
+    let corners = kernel.corners(quad);
+    let across_m = kernel.across_m[kernel.quads[quad as usize][k] as usize];
+    let area_m2 = across_m * distance(corners[k], corners[(k + 1) % 4]);
+    (area_m2 > 0.0).then_some(area_m2)
 }
 
 /// Raises the least [`evenness`] around the free nodes of quads that have little.
 pub(crate) fn level_worst(kernel: &mut Kernel, size_m: f64) {
     let uneven = |kernel: &Kernel, quad| evenness(kernel, quad) < EVEN;
     mend(kernel, uneven, |kernel, node| {
-        level(kernel, node, size_m, evenness, KEPT)
+        level(kernel, node, size_m, false, KEPT)
     });
 }
 
@@ -66,36 +71,31 @@ pub(crate) fn level_worst(kernel: &mut Kernel, size_m: f64) {
 pub(crate) fn level_across(kernel: &mut Kernel, size_m: f64) {
     let uneven = |kernel: &Kernel, quad| evenness_across(kernel, quad) < EVEN;
     mend(kernel, uneven, |kernel, node| {
-        level(kernel, node, size_m, evenness_across, KEPT_ACROSS)
+        level(kernel, node, size_m, true, KEPT_ACROSS)
     });
 }
 
 /// Searches a better least evenness of the quads of one node, up to [`EVEN`], none of them worth less than `kept` or
 /// than it was; returns what it gained.
-fn level(
-    kernel: &mut Kernel,
-    node: u32,
-    size_m: f64,
-    evenness: fn(&Kernel, u32) -> f64,
-    kept: f64,
-) -> f64 {
-    let spokes = kernel.spokes(node);
-    let quality = |kernel: &Kernel, side: u32| worth(kernel, quad_of(side), size_m);
-    let least = |kernel: &Kernel| {
-        let quads = spokes.iter().map(|&side| evenness(kernel, quad_of(side)));
-        quads.fold(1.0, f64::min)
-    };
-    let floors: Few<f64> = spokes
-        .iter()
-        .map(|&side| quality(kernel, side).min(kept))
+fn level(kernel: &mut Kernel, node: u32, size_m: f64, looks_across: bool, kept: f64) -> f64 {
+    let ring = Ring::of(kernel, node, size_m);
+    let beside = Beside::of(kernel, &ring, looks_across);
+    let floors: Few<f64> = (0..ring.len())
+        .map(|k| ring.worth(k, ring.at).min(kept))
         .collect();
-    let start = least(kernel);
-    let better = |kernel: &Kernel, best: f64| {
-        let holds = |(&side, &floor): (&u32, &f64)| quality(kernel, side) >= floor;
-        let allowed = best < EVEN && spokes.iter().zip(&floors).all(holds);
-        allowed.then(|| least(kernel)).filter(|&now| now > best)
+    let start = beside.least(&ring, ring.at);
+    let better = |place: Xy, best: f64| {
+        if best >= EVEN {
+            return None;
+        }
+        // an area costs less than a worth
+        let now = beside.least(&ring, place);
+        let holds = |(k, &floor): (usize, &f64)| ring.worth(k, place) >= floor;
+        (now > best && floors.iter().enumerate().all(holds)).then_some(now)
     };
-    compass(kernel, node, &spokes, start, better) - start
+    let (best, place) = compass(&ring, start, better);
+    kernel.nodes[node as usize] = place;
+    best - start
 }
 
 #[cfg(test)]
@@ -103,6 +103,7 @@ mod tests {
     use super::*;
     use crate::meshing::kernel::grid;
     use crate::meshing::kernel::shaken;
+    use crate::meshing::lift::worth;
     use crate::meshing::smooth::wish;
     use proptest::prelude::*;
 

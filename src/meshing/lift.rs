@@ -5,14 +5,17 @@
 //! wherever a candidate is made (`lift_worst`); in the patch that has won, nearly all quads are
 //! (`lift_last`), as long as areas stay even.
 
+use crate::geometry::point::Xy;
 use crate::geometry::quad::Measured;
 use crate::geometry::quad::measure;
+use crate::meshing::kernel::Few;
 use crate::meshing::kernel::Kernel;
-use crate::meshing::kernel::quad_of;
-use crate::meshing::level::evenness_across;
 use crate::meshing::mend::compass;
 use crate::meshing::mend::mend;
+use crate::meshing::ring::Beside;
+use crate::meshing::ring::Ring;
 use crate::meshing::triangulate::NONE;
+use std::cell::LazyCell;
 
 /// Below this worth a quad is lifted: far above the poorest, as the energy leaves the last percent
 /// behind. Measured on five cities: .75 for .3 raises the 1 % quantile by .02 to .04 for 5 % of the
@@ -53,20 +56,42 @@ const SPARED: f64 = 0.35;
 /// twentieth of the size nothing can be large, and trying costs a fifth of the time there.
 const COARSER: f64 = 2.0;
 
+/// What a quad is asked for, wherever its corners are.
+pub(crate) struct Wish {
+    /// Which sides count: all that are not on the outline.
+    inner: [bool; 4],
+    /// How large it should be, metres.
+    size_m: f64,
+}
+
+impl Wish {
+    pub fn of(kernel: &Kernel, quad: u32, size_m: f64) -> Wish {
+        let scales = kernel.quads[quad as usize].map(|node| kernel.scale[node as usize]);
+        let coarsest = scales.into_iter().fold(f64::INFINITY, f64::min);
+        Wish {
+            inner: kernel.twins[quad as usize].map(|twin| twin != NONE),
+            size_m: size_m.min(COARSER / coarsest.sqrt()),
+        }
+    }
+
+    /// The [`worth_of`] a quad with these corners, sides on the outline left out.
+    pub fn worth(&self, corners: &[Xy; 4]) -> f64 {
+        let measured = measure(corners);
+        if measured.scaled_jacobian <= 0.0 {
+            return measured.scaled_jacobian;
+        }
+        let sides = measured.sides_m.iter().zip(self.inner);
+        let shortest_m = sides
+            .filter(|it| it.1)
+            .map(|it| *it.0)
+            .fold(f64::INFINITY, f64::min);
+        worth_of(&measured, shortest_m, self.size_m)
+    }
+}
+
 /// The [`worth_of`] a quad, sides on the outline left out.
 pub(crate) fn worth(kernel: &Kernel, quad: u32, size_m: f64) -> f64 {
-    let measured = measure(&kernel.corners(quad));
-    if measured.scaled_jacobian <= 0.0 {
-        return measured.scaled_jacobian;
-    }
-    let shortest_m = (0..4)
-        .filter(|&k| kernel.twins[quad as usize][k] != NONE)
-        .map(|k| measured.sides_m[k])
-        .fold(f64::INFINITY, f64::min);
-    let scales = kernel.quads[quad as usize].map(|node| kernel.scale[node as usize]);
-    let coarsest = scales.into_iter().fold(f64::INFINITY, f64::min);
-    let size_m = size_m.min(COARSER / coarsest.sqrt());
-    worth_of(&measured, shortest_m, size_m)
+    Wish::of(kernel, quad, size_m).worth(&kernel.corners(quad))
 }
 
 /// The scaled Jacobian, less if the quad is small for its wished size or its shortest side that
@@ -99,29 +124,33 @@ pub(crate) fn lift_last(kernel: &mut Kernel, size_m: f64) {
 /// Searches a better least worth of the quads of one node, none of them less even than `even`, or than the least one
 /// was; returns what it gained.
 fn lift(kernel: &mut Kernel, node: u32, size_m: f64, even: f64) -> f64 {
-    let spokes = kernel.spokes(node);
-    let quality = |kernel: &Kernel, side: u32| worth(kernel, quad_of(side), size_m);
-    let least = |kernel: &Kernel| {
-        let worths = spokes.iter().map(|&side| quality(kernel, side));
-        worths.fold(f64::INFINITY, f64::min)
+    let ring = Ring::of(kernel, node, size_m);
+    let mut worths: Few<(f64, usize)> = (0..ring.len())
+        .map(|k| (ring.worth(k, ring.at), k))
+        .collect();
+    // most places fail at the poorest quad
+    worths.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let start = worths.first().map_or(f64::INFINITY, |it| it.0);
+    // few places get as far as to be asked for it
+    let evenness = LazyCell::new(|| {
+        let beside = Beside::of(kernel, &ring, true);
+        let floor = even.min(beside.least(&ring, ring.at));
+        (beside, floor)
+    });
+    let better = |place: Xy, best: f64| {
+        let mut least = f64::INFINITY;
+        for &(_, k) in &worths {
+            least = least.min(ring.worth(k, place));
+            if least <= best {
+                return None;
+            }
+        }
+        let is_even = even == 0.0 || evenness.0.least(&ring, place) >= evenness.1;
+        is_even.then_some(least)
     };
-    let least_even = |kernel: &Kernel| {
-        let quads = spokes.iter().map(|&side| quad_of(side));
-        let each = quads.map(|quad| evenness_across(kernel, quad));
-        each.fold(f64::INFINITY, f64::min)
-    };
-    let start = least(kernel);
-    let floor = match even > 0.0 {
-        true => even.min(least_even(kernel)),
-        false => 0.0,
-    };
-    // Most directions fail at the first quad.
-    let better = |kernel: &Kernel, best: f64| {
-        let rises = |&side: &u32| quality(kernel, side) > best;
-        let may = spokes.iter().all(rises) && (floor == 0.0 || least_even(kernel) >= floor);
-        may.then(|| least(kernel))
-    };
-    compass(kernel, node, &spokes, start, better) - start
+    let (best, place) = compass(&ring, start, better);
+    kernel.nodes[node as usize] = place;
+    best - start
 }
 
 #[cfg(test)]

@@ -2,10 +2,11 @@
 //! `lift` and `level` raise has none.
 
 use crate::geometry::point::COMPASS;
-use crate::geometry::quad::distance;
+use crate::geometry::point::Xy;
 use crate::meshing::kernel::Few;
 use crate::meshing::kernel::Kernel;
 use crate::meshing::kernel::quad_of;
+use crate::meshing::ring::Ring;
 use crate::meshing::triangulate::NONE;
 
 /// Sweeps over the quads that are still to be mended.
@@ -77,39 +78,32 @@ fn has_changed(kernel: &Kernel, quads: &[u32], changed: &[u32], since: u32) -> b
 /// quad: shape alone would let two nodes fall together.
 const APART: f64 = 0.18;
 
-/// Moves one node where `better`, given the best value until now, finds a better one; returns the best.
+/// Searches a place for the node of a ring where `better`, given the best value until now, finds a better one; returns
+/// the best and its place.
 pub(crate) fn compass(
-    kernel: &mut Kernel,
-    node: u32,
-    spokes: &[u32],
+    ring: &Ring,
     start: f64,
-    better: impl Fn(&Kernel, f64) -> Option<f64>,
-) -> f64 {
-    let shortest_m = |kernel: &Kernel| {
-        let at = kernel.nodes[node as usize];
-        let length = |&side: &u32| distance(at, kernel.nodes[kernel.end(side) as usize]);
-        spokes.iter().map(length).fold(f64::INFINITY, f64::min)
-    };
-    let mut best = start;
-    let mut step_m = 0.3 * shortest_m(kernel);
-    let floor_m = shortest_m(kernel).min(APART / kernel.scale[node as usize].sqrt());
+    better: impl Fn(Xy, f64) -> Option<f64>,
+) -> (f64, Xy) {
+    let (mut best, mut at) = (start, ring.at);
+    let shortest_m = ring.shortest_m(at);
+    let mut step_m = 0.3 * shortest_m;
+    let floor_m = shortest_m.min(APART / ring.per_m);
     for _ in 0..STEPS {
-        let at = kernel.nodes[node as usize];
         let mut to = at;
         for [x, y] in COMPASS {
-            kernel.nodes[node as usize] = [at[0] + step_m * x, at[1] + step_m * y];
-            let value = better(kernel, best).filter(|_| shortest_m(kernel) >= floor_m);
+            let place = [at[0] + step_m * x, at[1] + step_m * y];
+            let value = better(place, best).filter(|_| ring.shortest_m(place) >= floor_m);
             if let Some(value) = value {
-                best = value;
-                to = kernel.nodes[node as usize];
+                (best, to) = (value, place);
             }
         }
-        kernel.nodes[node as usize] = to;
         if to == at {
             step_m *= 0.4;
         }
+        at = to;
     }
-    best
+    (best, at)
 }
 
 #[cfg(test)]
@@ -117,6 +111,7 @@ mod tests {
     use super::*;
     use crate::meshing::kernel::shaken;
     use crate::meshing::level::evenness;
+    use crate::meshing::ring::Beside;
     use proptest::prelude::*;
 
     /// The same, each node of a doubtful quad searched in each sweep.
@@ -160,14 +155,15 @@ mod tests {
         ) {
             let poor = |kernel: &Kernel, quad| evenness(kernel, quad) < 0.8;
             let search = |kernel: &mut Kernel, node: u32| {
-                let spokes = kernel.spokes(node);
-                let least = |kernel: &Kernel| {
-                    let quads = spokes.iter().map(|&side| evenness(kernel, quad_of(side)));
-                    quads.fold(1.0, f64::min)
+                let ring = Ring::of(kernel, node, 1.0);
+                let beside = Beside::of(kernel, &ring, false);
+                let start = beside.least(&ring, ring.at);
+                let better = |place: Xy, best: f64| {
+                    Some(beside.least(&ring, place)).filter(|&it| it > best)
                 };
-                let start = least(kernel);
-                let better = |kernel: &Kernel, best: f64| Some(least(kernel)).filter(|&it| it > best);
-                compass(kernel, node, &spokes, start, better) - start
+                let (best, place) = compass(&ring, start, better);
+                kernel.nodes[node as usize] = place;
+                best - start
             };
             let (mut one, mut other) = (shaken(&moves, by), shaken(&moves, by));
             mend(&mut one, poor, search);

@@ -86,6 +86,7 @@ pub mod patch;
 mod patterns;
 mod refill;
 mod regular;
+mod ring;
 mod rows;
 mod scatter;
 pub mod score;
