@@ -43,6 +43,24 @@ pub fn scaled_jacobian(p: &[Xy; 4]) -> f64 {
     least
 }
 
+/// True if the scaled Jacobian is surely below `least`, which is positive: most trial places are told apart by this,
+/// without roots and divisions. It may be below if this is false, by a share of 1e-9 or less.
+pub fn is_surely_below(p: &[Xy; 4], least: f64) -> bool {
+    let side = |k: usize| {
+        let (a, b) = (p[k], p[(k + 1) & 3]);
+        [b[0] - a[0], b[1] - a[1]]
+    };
+    let sides = [side(0), side(1), side(2), side(3)];
+    let squares = sides.map(|it| it[0] * it[0] + it[1] * it[1]);
+    // more than what rounding can do
+    let least2 = least * least * (1.0 - 1e-9);
+    (0..4).any(|k| {
+        let last = (k + 3) & 3;
+        let jacobian = sides[last][0] * sides[k][1] - sides[last][1] * sides[k][0];
+        jacobian < 0.0 || jacobian * jacobian < least2 * squares[k] * squares[last]
+    })
+}
+
 /// Signed area, m².
 pub fn area(p: &[Xy; 4]) -> f64 {
     0.5 * ((p[2][0] - p[0][0]) * (p[3][1] - p[1][1]) - (p[2][1] - p[0][1]) * (p[3][0] - p[1][0]))

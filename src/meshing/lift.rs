@@ -140,10 +140,7 @@ fn lift(kernel: &mut Kernel, node: u32, size_m: f64, even: f64) -> f64 {
     let better = |place: Xy, best: f64| {
         let mut least = f64::INFINITY;
         for &(_, k) in &worths {
-            least = least.min(ring.worth(k, place));
-            if least <= best {
-                return None;
-            }
+            least = least.min(ring.worth_above(k, place, best)?);
         }
         let is_even = even == 0.0 || evenness.0.least(&ring, place) >= evenness.1;
         is_even.then_some(least)

@@ -4,6 +4,7 @@
 use crate::geometry::point::Xy;
 use crate::geometry::quad::area;
 use crate::geometry::quad::distance;
+use crate::geometry::quad::is_surely_below;
 use crate::meshing::kernel::Few;
 use crate::meshing::kernel::Kernel;
 use crate::meshing::kernel::quad_of;
@@ -61,6 +62,15 @@ impl Ring {
     /// The [`worth`](crate::meshing::lift::worth) of quad `k` if the node were at `place`.
     pub fn worth(&self, k: usize, place: Xy) -> f64 {
         self.sectors[k].wish.worth(&self.corners(k, place))
+    }
+
+    /// The same, if it is above `best`.
+    pub fn worth_above(&self, k: usize, place: Xy, best: f64) -> Option<f64> {
+        let corners = self.corners(k, place);
+        if best > 0.0 && is_surely_below(&corners, best) {
+            return None;
+        }
+        Some(self.sectors[k].wish.worth(&corners)).filter(|&it| it > best)
     }
 
     /// The shortest edge at the node if it were at `place`, metres.
