@@ -5,6 +5,8 @@ use polder::geometry::crossing::crossing;
 use polder::geometry::crossing::passes_pixel;
 use polder::geometry::point::LIMIT;
 use polder::geometry::point::Point;
+use polder::geometry::quad::is_surely_below;
+use polder::geometry::quad::scaled_jacobian;
 use polder::geometry::turns::quarter_turns;
 use proptest::prelude::*;
 
@@ -96,6 +98,22 @@ proptest! {
         };
         let p = Point::new(at(a.x, b.x) + off.x, at(a.y, b.y) + off.y);
         prop_assert_eq!(passes_pixel(a, b, p), passes_pixel_twin(a, b, p));
+    }
+
+    /// Trial places are refused by the quick test; it must refuse no quad that the slow one would take, and few others
+    /// may get past it.
+    #[test]
+    fn a_shape_that_is_surely_below_is_below(
+        corners in prop::array::uniform4(prop::array::uniform2(-1.0_f64..1.0)),
+        least in 1e-3_f64..1.0,
+        close in -1e-12_f64..1e-12,
+    ) {
+        let shape = scaled_jacobian(&corners);
+        prop_assert!(!is_surely_below(&corners, least) || shape < least);
+        prop_assert!(is_surely_below(&corners, least) || shape > least * (1.0 - 1e-8));
+        if shape > 0.0 {
+            prop_assert!(!is_surely_below(&corners, shape * (1.0 + close)), "rounding decides");
+        }
     }
 
     #[test]
