@@ -67,8 +67,8 @@ pub(crate) fn finish(
 }
 
 /// The last pass over the patch that has won: lifts nearly all quads, and levels areas with those across the outline
-/// too. Connections stay. (It comes after the contest since it serves no choice, and costs an eighth to a fifth of all
-/// processor time.)
+/// too. Connections stay. (It comes after the contest since it serves no choice, and costs a tenth of all processor
+/// time.)
 pub(crate) fn polish(
     (mut draft, patch, score): (Draft, Patch, Score),
     visits: &Visits,
