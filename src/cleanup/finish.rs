@@ -96,7 +96,8 @@ impl Joined<'_> {
             }
         };
         let lost = dropped.iter().filter(|it| it.reason != Reason::Shrunk);
-        let length_dropped_m = lost.map(|it| it.to_m - it.from_m).sum();
+        // a sum of nothing would be -0.0, and be printed so
+        let length_dropped_m = lost.fold(0.0, |sum, it| sum + (it.to_m - it.from_m));
         dropped.extend(torn);
         dropped.sort_by(|a, b| (a.line.cmp(&b.line)).then(a.from_m.total_cmp(&b.from_m)));
         Threaded {

@@ -171,5 +171,6 @@ fn peak_memory_bytes() -> u64 {
 /// Length that was dropped for this reason, metres.
 fn length_m(dropped: &[Dropped], reason: Reason) -> f64 {
     let of_reason = dropped.iter().filter(|it| it.reason == reason);
-    of_reason.map(|it| it.to_m - it.from_m).sum()
+    // a sum of nothing would be -0.0, and be printed so
+    of_reason.fold(0.0, |sum, it| sum + (it.to_m - it.from_m))
 }

@@ -72,6 +72,8 @@ fn the_way_through_on_a_small_city() {
     let facts: serde_json::Value = serde_json::from_slice(&built.stdout).unwrap();
     assert_eq!(facts["holds"], true);
     assert!(facts["quads"].as_u64().unwrap() > 500);
+    // where nothing was given up it said -0.0
+    assert!(!String::from_utf8_lossy(&built.stdout).contains("-0.0"));
     for words in [
         &["check", "m.polder"][..],
         &["info", "m.polder", "--json"],
