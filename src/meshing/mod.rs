@@ -38,8 +38,8 @@
 //! - `kernel`, `edits`, `refill`, `improve`, `star`, `smooth`, `lift`: the finish, on the part of a draft
 //!   that is not settled. Operations after Kinney (1997) and Canann, Muthukrishnan, Phillips (1998),
 //!   each with undo; smoothing after Garanzha and others (2021).
-//! - `level`, `mend`: in it, too, neighbours of steep areas; the winner is polished, by lifting nearly all quads and
-//!   levelling with what lies across the outline.
+//! - `level`, `mend`, `ring`: in it, too, neighbours of steep areas; the winner is polished, by lifting nearly all quads
+//!   and levelling with what lies across the outline.
 //! - `windows`, `regular`: in it, convex windows around irregular nodes filled again by a pattern
 //!   with fewer, with undo like any operation. After Peng, Zhang, Kobayashi and Wonka (2011).
 //!
