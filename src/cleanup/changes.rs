@@ -44,6 +44,12 @@ pub struct Dropped {
     pub to_m: f64,
 }
 
+/// Length of some stretches together, metres.
+pub fn length_m<'a>(stretches: impl Iterator<Item = &'a Dropped>) -> f64 {
+    // a sum of nothing would be -0.0, and be printed so
+    stretches.fold(0.0, |sum, it| sum + (it.to_m - it.from_m))
+}
+
 /// One place where clean-up changed the topology: for the layer of changes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Change {

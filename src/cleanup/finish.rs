@@ -8,6 +8,7 @@ use crate::cleanup::audit::Stretch;
 use crate::cleanup::changes::Dropped;
 use crate::cleanup::changes::Reason;
 use crate::cleanup::changes::Tally;
+use crate::cleanup::changes::length_m;
 use crate::cleanup::graph::Graph;
 use crate::cleanup::leftovers;
 use crate::cleanup::measure::Measure;
@@ -96,8 +97,7 @@ impl Joined<'_> {
             }
         };
         let lost = dropped.iter().filter(|it| it.reason != Reason::Shrunk);
-        // a sum of nothing would be -0.0, and be printed so
-        let length_dropped_m = lost.fold(0.0, |sum, it| sum + (it.to_m - it.from_m));
+        let length_dropped_m = length_m(lost);
         dropped.extend(torn);
         dropped.sort_by(|a, b| (a.line.cmp(&b.line)).then(a.from_m.total_cmp(&b.from_m)));
         Threaded {

@@ -22,16 +22,21 @@ pub fn corner_jacobians(p: &[Xy; 4]) -> [f64; 4] {
     std::array::from_fn(|k| cross(p[k], p[(k + 1) % 4], p[(k + 3) % 4]))
 }
 
+/// From each corner to the next.
+#[inline]
+fn sides(p: &[Xy; 4]) -> [Xy; 4] {
+    [0, 1, 2, 3].map(|k| {
+        let (a, b) = (p[k], p[(k + 1) & 3]);
+        [b[0] - a[0], b[1] - a[1]]
+    })
+}
+
 /// Scaled Jacobian: the least sine of a corner, in [-1, 1]; 1 for a rectangle, 0 if an edge has no
 /// length.
 ///
 /// Asked for more often than anything else: each side is measured once.
 pub fn scaled_jacobian(p: &[Xy; 4]) -> f64 {
-    let side = |k: usize| {
-        let (a, b) = (p[k], p[(k + 1) & 3]);
-        [b[0] - a[0], b[1] - a[1]]
-    };
-    let sides = [side(0), side(1), side(2), side(3)];
+    let sides = sides(p);
     let squares = sides.map(|it| it[0] * it[0] + it[1] * it[1]);
     let mut least = 1.0_f64;
     for k in 0..4 {
@@ -46,11 +51,7 @@ pub fn scaled_jacobian(p: &[Xy; 4]) -> f64 {
 /// True if the scaled Jacobian is surely below `least`, which is positive: most trial places are told apart by this,
 /// without roots and divisions. It may be below if this is false, by a share of 1e-9 or less.
 pub fn is_surely_below(p: &[Xy; 4], least: f64) -> bool {
-    let side = |k: usize| {
-        let (a, b) = (p[k], p[(k + 1) & 3]);
-        [b[0] - a[0], b[1] - a[1]]
-    };
-    let sides = [side(0), side(1), side(2), side(3)];
+    let sides = sides(p);
     let squares = sides.map(|it| it[0] * it[0] + it[1] * it[1]);
     // more than what rounding can do
     let least2 = least * least * (1.0 - 1e-9);
@@ -89,11 +90,7 @@ pub struct Measured {
 
 /// Measures a quad for the price of its four sides.
 pub fn measure(p: &[Xy; 4]) -> Measured {
-    let side = |k: usize| {
-        let (a, b) = (p[k], p[(k + 1) & 3]);
-        [b[0] - a[0], b[1] - a[1]]
-    };
-    let sides = [side(0), side(1), side(2), side(3)];
+    let sides = sides(p);
     let sides_m = sides.map(|it| (it[0] * it[0] + it[1] * it[1]).sqrt());
     let mut least = 1.0_f64;
     for k in 0..4 {

@@ -7,6 +7,7 @@
 //! their number) and cannot leave half an edit behind.
 
 use crate::geometry::point::Xy;
+use crate::geometry::quad::distance;
 use crate::geometry::quad::scaled_jacobian;
 use crate::meshing::buckets::sorted_by_node;
 use crate::meshing::draft::Draft;
@@ -266,6 +267,14 @@ impl Kernel {
     /// Positions of the corners of `quad`.
     pub fn corners(&self, quad: u32) -> [Xy; 4] {
         self.quads[quad as usize].map(|node| self.nodes[node as usize])
+    }
+
+    /// The likely area of what lies across side `k` of a quad, which is on the outline, m2; none if nothing is known.
+    pub fn across_m2(&self, quad: u32, k: usize) -> Option<f64> {
+        let corners = self.corners(quad);
+        let across_m = self.across_m[self.quads[quad as usize][k] as usize];
+        let area_m2 = across_m * distance(corners[k], corners[(k + 1) % 4]);
+        (area_m2 > 0.0).then_some(area_m2)
     }
 
     /// Scaled Jacobian of `quad`.

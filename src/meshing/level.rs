@@ -5,7 +5,6 @@
 
 use crate::geometry::point::Xy;
 use crate::geometry::quad::area;
-use crate::geometry::quad::distance;
 use crate::meshing::kernel::Few;
 use crate::meshing::kernel::Kernel;
 use crate::meshing::kernel::quad_of;
@@ -46,17 +45,9 @@ pub(crate) fn evenness(kernel: &Kernel, quad: u32) -> f64 {
 pub(crate) fn evenness_across(kernel: &Kernel, quad: u32) -> f64 {
     let own = area(&kernel.corners(quad));
     let outer = (0..4).filter(|&k| kernel.twins[quad as usize][k] == NONE);
-    let known = outer.filter_map(|k| across_m2(kernel, quad, k));
+    let known = outer.filter_map(|k| kernel.across_m2(quad, k));
     let ratios = known.map(|other| (own / other).min(other / own));
     ratios.fold(evenness(kernel, quad), f64::min)
-}
-
-/// The likely area of what lies across side `k` of a quad, which is on the outline, m2; none if nothing is known.
-pub(crate) fn across_m2(kernel: &Kernel, quad: u32, k: usize) -> Option<f64> {
-    let corners = kernel.corners(quad);
-    let across_m = kernel.across_m[kernel.quads[quad as usize][k] as usize];
-    let area_m2 = across_m * distance(corners[k], corners[(k + 1) % 4]);
-    (area_m2 > 0.0).then_some(area_m2)
 }
 
 /// Raises the least [`evenness`] around the free nodes of quads that have little.

@@ -8,7 +8,6 @@ use crate::geometry::quad::is_surely_below;
 use crate::meshing::kernel::Few;
 use crate::meshing::kernel::Kernel;
 use crate::meshing::kernel::quad_of;
-use crate::meshing::level::across_m2;
 use crate::meshing::lift::Wish;
 use crate::meshing::triangulate::NONE;
 use smallvec::SmallVec;
@@ -99,7 +98,7 @@ impl Beside {
     pub fn of(kernel: &Kernel, ring: &Ring, looks_across: bool) -> Beside {
         let each = ring.sectors.iter().map(|it| {
             let neighbour = |k: usize| match kernel.twins[it.quad as usize][k] {
-                NONE if looks_across => across_m2(kernel, it.quad, k).map(Neighbour::Fixed),
+                NONE if looks_across => kernel.across_m2(it.quad, k).map(Neighbour::Fixed),
                 NONE => None,
                 twin => {
                     let other = quad_of(twin);

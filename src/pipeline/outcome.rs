@@ -1,8 +1,8 @@
 //! What a build made and what a plan foresees, in numbers.
 
 use crate::check::verdict::Verdict;
-use crate::cleanup::changes::Dropped;
 use crate::cleanup::changes::Reason;
+use crate::cleanup::changes::length_m;
 use crate::domain::finding::Finding;
 use crate::pipeline::job::Job;
 use crate::pipeline::plan::Plan;
@@ -70,7 +70,10 @@ impl Outcome {
         }
         let budget = f64::from(job.seam_budget_quads);
         let fit = &plan.city.balance.structure;
-        let dropped = &plan.city.dropped;
+        let dropped_m = |reason| {
+            let dropped = plan.city.dropped.iter();
+            length_m(dropped.filter(|it| it.reason == reason))
+        };
         Outcome {
             stages,
             subdomains: plan.city.partition.subdomains.len(),
@@ -82,8 +85,8 @@ impl Outcome {
             length_m: plan.city.tally.length_m,
             length_dropped_m: plan.city.tally.length_dropped_m,
             sharp_angles: plan.city.tally.sharp_angles,
-            length_shrunk_m: length_m(dropped, Reason::Shrunk),
-            length_loops_m: length_m(dropped, Reason::SmallLoop),
+            length_shrunk_m: dropped_m(Reason::Shrunk),
+            length_loops_m: dropped_m(Reason::SmallLoop),
             ilp_gap: plan.city.balance.gap(),
             blocks: [fit.blocks, fit.mapped, fit.mapped_before],
             pattern_gap: plan.city.balance.structure_gap(),
@@ -166,11 +169,4 @@ fn peak_memory_bytes() -> u64 {
     let line = status.lines().find_map(|it| it.strip_prefix("VmHWM:"));
     let kib = line.and_then(|it| it.trim().trim_end_matches("kB").trim().parse::<u64>().ok());
     kib.unwrap_or(0) * 1024
-}
-
-/// Length that was dropped for this reason, metres.
-fn length_m(dropped: &[Dropped], reason: Reason) -> f64 {
-    let of_reason = dropped.iter().filter(|it| it.reason == reason);
-    // a sum of nothing would be -0.0, and be printed so
-    of_reason.fold(0.0, |sum, it| sum + (it.to_m - it.from_m))
 }
